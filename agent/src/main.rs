@@ -1,0 +1,2 @@
+//! The `phystalk` program.
+fn main() {}

@@ -1,0 +1,193 @@
+//! Opening a device, and the one enum that decides which form of a pass runs on it.
+
+use std::sync::OnceLock;
+
+/// Which form of a pass suits the device. Decided once, by the kind of adapter, never by a timing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Tier {
+    /// A software Vulkan (lavapipe, SwiftShader): barriers and passes are dear, serial loops cheap.
+    Cpu,
+    /// A graphics processor.
+    Gpu,
+}
+
+/// What the user asked for on the command line.
+#[derive(Clone, Debug, Default)]
+pub struct DeviceRequest {
+    /// Take only adapters whose name contains this, case folded.
+    pub name_contains: Option<String>,
+    /// Take a software adapter even where there is a GPU.
+    pub cpu: bool,
+}
+
+/// Why there is no device, or why it stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// Nothing that speaks Vulkan, Metal or DirectX 12 answered.
+    #[error(
+        "no usable graphics adapter: {found}\n  looked for {wanted}\n  a GPU needs its driver and the Vulkan loader; without a GPU install lavapipe: \
+         sudo apt install libvulkan1 mesa-vulkan-drivers (then `phystalk doctor`)"
+    )]
+    NoAdapter {
+        /// What was found instead.
+        found: String,
+        /// What was asked for.
+        wanted: String,
+    },
+    /// The adapter refused a device.
+    #[error("the adapter {adapter} gave no device: {reason}")]
+    NoDevice {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver said.
+        reason: String,
+    },
+    /// An allocation would pass the adapter's limit.
+    #[error(
+        "{what} needs {needed_bytes} bytes in one buffer, and {device} allows {allowed_bytes}; use fewer Gaussians or a smaller solver.cells_across"
+    )]
+    TooLarge {
+        /// What the buffer was for.
+        what: String,
+        /// How much it needs.
+        needed_bytes: u64,
+        /// How much the adapter allows.
+        allowed_bytes: u64,
+        /// The adapter's name.
+        device: String,
+    },
+    /// The device was lost, or a result could not be read back.
+    #[error("the device {device} stopped answering: {reason}")]
+    Lost {
+        /// The adapter's name.
+        device: String,
+        /// What the driver said.
+        reason: String,
+    },
+}
+
+/// An open device. Cheap to clone; every clone is the same device.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// The wgpu device.
+    pub device: wgpu::Device,
+    /// Its only queue.
+    pub queue: wgpu::Queue,
+    /// Name, driver, backend and kind of the adapter.
+    pub info: wgpu::AdapterInfo,
+    /// Which form of each pass to run.
+    pub tier: Tier,
+    /// Lanes that execute together: the smallest and the largest subgroup the adapter may use.
+    pub subgroup_lanes: (u32, u32),
+    /// Whether timestamps may be written inside an encoder.
+    pub can_time: bool,
+}
+
+impl Gpu {
+    /// Opens the best adapter that fits: a GPU where there is one, else a software adapter.
+    pub fn open(request: &DeviceRequest) -> Result<Gpu, GpuError> {
+        pollster::block_on(open(request))
+    }
+
+    /// Wraps a device that a window already opened, so that both draw on one device.
+    pub fn from_parts(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Gpu {
+        let info = adapter.get_info();
+        let features = device.features();
+        Gpu {
+            tier: tier_of(&info),
+            subgroup_lanes: (info.subgroup_min_size, info.subgroup_max_size),
+            can_time: features.contains(TIMING),
+            device,
+            queue,
+            info,
+        }
+    }
+
+    /// The adapter's name as shown to users and kept in `metrics.json`.
+    pub fn name(&self) -> &str {
+        &self.info.name
+    }
+
+    /// A device lost in the middle of work, in the user's words.
+    pub fn lost(&self, reason: impl std::fmt::Display) -> GpuError {
+        GpuError::Lost { device: self.info.name.clone(), reason: reason.to_string() }
+    }
+
+    /// One device for all tests of a binary: opening one a test would cost more than the tests do.
+    ///
+    /// Returns an error where the machine has no Vulkan at all, which fails the test: none is skipped.
+    pub fn shared_for_tests() -> Result<Gpu, String> {
+        static SHARED: OnceLock<Result<Gpu, String>> = OnceLock::new();
+        SHARED.get_or_init(|| Gpu::open(&DeviceRequest::default()).map_err(|e| e.to_string())).clone()
+    }
+}
+
+/// Features that timing needs; asked for where the adapter has them.
+const TIMING: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
+
+/// Features without which no pass of ours runs.
+const REQUIRED: wgpu::Features = wgpu::Features::SUBGROUP.union(wgpu::Features::IMMEDIATES);
+
+fn instance() -> wgpu::Instance {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+    // Indirect counts come from our own kernels; checking each one costs more than the dispatch.
+    descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
+    wgpu::Instance::new(descriptor)
+}
+
+fn tier_of(info: &wgpu::AdapterInfo) -> Tier {
+    match info.device_type {
+        wgpu::DeviceType::Cpu => Tier::Cpu,
+        _ => Tier::Gpu,
+    }
+}
+
+/// Every adapter of this machine, for `doctor`.
+pub fn list_adapters() -> Vec<wgpu::AdapterInfo> {
+    let instance = instance();
+    pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all())).iter().map(wgpu::Adapter::get_info).collect()
+}
+
+/// Discrete before integrated before virtual before software.
+fn rank(kind: wgpu::DeviceType) -> u32 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+async fn open(request: &DeviceRequest) -> Result<Gpu, GpuError> {
+    let instance = instance();
+    let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+    adapters.sort_by_key(|a| rank(a.get_info().device_type));
+    let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+    let fits = |adapter: &wgpu::Adapter| {
+        let info = adapter.get_info();
+        let name_fits = request.name_contains.as_ref().is_none_or(|want| info.name.to_lowercase().contains(&want.to_lowercase()));
+        name_fits && (!request.cpu || info.device_type == wgpu::DeviceType::Cpu) && adapter.features().contains(REQUIRED)
+    };
+    let Some(adapter) = adapters.iter().find(|a| fits(a)) else {
+        let wanted = match (&request.name_contains, request.cpu) {
+            (Some(name), _) => format!("a device whose name contains \"{name}\""),
+            (None, true) => "a software adapter (--cpu)".to_owned(),
+            (None, false) => "any adapter with subgroups and immediates".to_owned(),
+        };
+        let found = if names.is_empty() { "none was found".to_owned() } else { format!("found {}", names.join(", ")) };
+        return Err(GpuError::NoAdapter { found, wanted });
+    };
+    let info = adapter.get_info();
+    let optional = TIMING | wgpu::Features::PIPELINE_CACHE;
+    let descriptor = wgpu::DeviceDescriptor {
+        label: Some("phystalk"),
+        required_features: REQUIRED | (adapter.features() & optional),
+        required_limits: adapter.limits(),
+        ..Default::default()
+    };
+    let (device, queue) =
+        adapter.request_device(&descriptor).await.map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
+    Ok(Gpu::from_parts(adapter, device, queue))
+}

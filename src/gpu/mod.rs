@@ -1,0 +1,15 @@
+//! Device tiers, buffers, kernels, recordings, timing: everything that touches wgpu directly.
+//!
+//! A pass is a [`KernelSource`] (its WGSL, what it binds, what it is called); compiled it is a
+//! [`Kernel`]; bound and sized it is a step of a [`Recording`], which is plain data: it can be
+//! listed, replayed and timed.
+
+mod buffers;
+mod device;
+mod kernel;
+mod recording;
+
+pub use buffers::Readback;
+pub use device::{DeviceRequest, Gpu, GpuError, Tier, list_adapters};
+pub use kernel::{Access, Constant, Kernel, KernelSource};
+pub use recording::{PassTime, Recording, Step};

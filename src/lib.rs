@@ -1,0 +1,12 @@
+//! Talk to a 3D Gaussian Splatting scene, and physics answers: the engine.
+//!
+//! A [`spec::Spec`] says what to simulate. The stages prepare its scene, solve its motion and draw
+//! its pictures; only what changed runs again.
+
+pub mod gpu;
+pub mod scene;
+mod sink;
+pub mod skin;
+pub mod spec;
+
+pub use sink::{Discard, Frame, Progress, Sink, Stop};
