@@ -8,5 +8,7 @@ pub mod scene;
 mod sink;
 pub mod skin;
 pub mod spec;
+pub mod stages;
+pub mod world;
 
 pub use sink::{Discard, Frame, Progress, Sink, Stop};

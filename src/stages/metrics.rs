@@ -1,0 +1,109 @@
+//! What was measured of a run: the content of `metrics.json`.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A run in numbers: SI units, z up, one entry of each array for each frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Metrics {
+    /// Name of the version; empty where there is none.
+    pub version: String,
+    /// Hash of the canonical spec.
+    pub spec: String,
+    /// Frames a second.
+    pub fps: u32,
+    /// How many frames were simulated.
+    pub frames: u32,
+    /// Seconds of motion.
+    pub duration_s: f64,
+    /// What the solver did.
+    pub solver: SolverMetrics,
+    /// Values that were `"auto"`, by path.
+    pub resolved: serde_json::Map<String, serde_json::Value>,
+    /// Wall seconds of each stage.
+    pub seconds: BTreeMap<String, f64>,
+    /// Simulated objects, by name.
+    pub objects: BTreeMap<String, ObjectMetrics>,
+    /// What was expected, and whether it held.
+    pub expect: Vec<ExpectationResult>,
+}
+
+/// What the solver did.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct SolverMetrics {
+    /// Name of the device.
+    pub device: String,
+    /// `draft` or `full`.
+    pub quality: String,
+    /// Edge of a grid cell.
+    pub cell_m: f64,
+    /// Smallest and largest substep.
+    pub substep_s: SubstepRange,
+    /// Substeps in all.
+    pub substeps: u64,
+    /// Particles in all.
+    pub particles: u64,
+    /// Particles with a value that is not a number, at the end: always 0.
+    pub nonfinite: u64,
+    /// Frames that were rolled back and repeated with a smaller substep.
+    pub retries: u32,
+    /// What had to be softened, in words; empty where nothing was.
+    pub softened: Vec<String>,
+    /// Wall seconds of the simulation.
+    pub simulate_s: f64,
+}
+
+/// Smallest and largest substep, seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct SubstepRange {
+    /// Smallest.
+    pub min: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// One object in numbers. Definitions are in `docs/spec.md` and `phystalk schema metrics`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ObjectMetrics {
+    /// Particles of its solid.
+    pub particles: u64,
+    /// Gaussians that follow them.
+    pub gaussians: u64,
+    /// Mass.
+    pub mass_kg: f64,
+    /// Inner particles over all.
+    pub fill_ratio: f64,
+    /// Centre of mass.
+    pub com_m: Vec<[f64; 3]>,
+    /// First percentile of particle height.
+    pub low_m: Vec<f64>,
+    /// 99th percentile of particle height.
+    pub high_m: Vec<f64>,
+    /// Speed of the fastest particle.
+    pub speed_m_s: Vec<f64>,
+    /// Mean speed.
+    pub mean_speed_m_s: Vec<f64>,
+    /// Volume over the undeformed body's.
+    pub volume_ratio: Vec<f64>,
+    /// 99th percentile of the largest principal stretch since rest.
+    pub stretch_max: Vec<f64>,
+    /// Inertia^-1 times angular momentum.
+    pub spin_rad_s: Vec<[f64; 3]>,
+    /// Kinetic energy.
+    pub kinetic_j: Vec<f64>,
+    /// Root mean square horizontal distance from the centre of mass.
+    pub spread_m: Vec<f64>,
+    /// Lowest particle over what is below it.
+    pub gap_m: Vec<f64>,
+}
+
+/// One expectation of the spec.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ExpectationResult {
+    /// As written.
+    pub text: String,
+    /// What was measured.
+    pub value: Option<f64>,
+    /// Whether it held.
+    pub held: bool,
+}

@@ -1,0 +1,11 @@
+//! What to do and what to skip: keys, plan with reasons, cache, resume, progress.
+//!
+//! The stages are few and always these five: `scene`, `proxy`, `bind`, `simulate`, `picture`. Each is
+//! a pure function of its declared inputs; its key is a hash of those inputs, the stage's version and
+//! its shader text. Equal key, equal bytes on the same device.
+
+mod metrics;
+mod plan;
+
+pub use metrics::{ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, SubstepRange};
+pub use plan::{Action, Plan, PlannedStage, Quality, RunOptions, StageName};
