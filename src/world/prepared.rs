@@ -1,0 +1,93 @@
+//! A scene read, turned upright and divided into objects: what every later stage starts from.
+
+use super::{Facts, ObjectFacts};
+use crate::scene::Gaussians;
+use crate::spec::{Axis, Camera, Collider, ColliderShape, Spec};
+use glam::{Quat, Vec3};
+
+/// The scene of one spec in the captured pose. World frame, metres.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// All Gaussians, along a Morton curve.
+    pub gaussians: Gaussians,
+    /// From the frame of the spherical harmonics to the world.
+    pub world_from_sh: Quat,
+    /// Index of each Gaussian's object, `u32::MAX` where it has none.
+    pub object_of: Vec<u32>,
+    /// Isolated Gaussians: drawn, but no part of any solid.
+    pub floater: Vec<bool>,
+    /// Which axis of the file points up, given or guessed.
+    pub up: Axis,
+    /// Height of the ground plane.
+    pub ground_m: f64,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+impl Prepared {
+    /// Indices of one object's Gaussians; without floaters where they would distort a solid.
+    pub fn members(&self, object: u32, with_floaters: bool) -> Vec<u32> {
+        (0..self.gaussians.len() as u32).filter(|&i| self.object_of[i as usize] == object && (with_floaters || !self.floater[i as usize])).collect()
+    }
+
+    /// Lowest centre of all objects' Gaussians, floaters pruned.
+    pub fn lowest(gaussians: &Gaussians, object_of: &[u32], floater: &[bool]) -> Option<f32> {
+        let heights = gaussians.mean.iter().zip(object_of).zip(floater);
+        heights.filter(|((_, object), floater)| **object != u32::MAX && !**floater).map(|((mean, _), _)| mean.z).reduce(f32::min)
+    }
+
+    /// Everything the language and the camera need to know of the objects.
+    pub fn facts(&self, spec: &Spec, camera: Camera) -> Facts {
+        Facts { objects: self.object_facts(spec), ground_m: self.ground_m, camera, has_static: self.object_of.contains(&u32::MAX) }
+    }
+
+    /// One entry for each object of the spec, in its order.
+    pub fn object_facts(&self, spec: &Spec) -> Vec<ObjectFacts> {
+        spec.objects
+            .iter()
+            .enumerate()
+            .map(|(index, object)| {
+                let members = self.members(index as u32, false);
+                let points: Vec<Vec3> = members.iter().map(|&i| self.gaussians.mean[i as usize]).collect();
+                let low = points.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
+                let high = points.iter().copied().reduce(Vec3::max).unwrap_or(Vec3::ZERO);
+                let sum: glam::DVec3 = points.iter().map(|p| p.as_dvec3()).sum();
+                let centre = sum / points.len().max(1) as f64;
+                ObjectFacts {
+                    name: object.name.clone(),
+                    gaussians: members.len(),
+                    low_m: low.as_dvec3().to_array(),
+                    high_m: high.as_dvec3().to_array(),
+                    centre_m: centre.to_array(),
+                    support_m: support_below(&spec.colliders, self.ground_m, centre.x, centre.y, f64::from(low.z)),
+                    forward: object.forward,
+                }
+            })
+            .collect()
+    }
+}
+
+/// Height of what is below a point: the ground, or the highest collider top that is not above it by
+/// more than a hundredth of a metre.
+pub fn support_below(colliders: &[Collider], ground_m: f64, x: f64, y: f64, z: f64) -> f64 {
+    colliders.iter().filter_map(|c| top_at(&c.shape, x, y)).filter(|top| *top <= z + 0.01).fold(ground_m, f64::max)
+}
+
+/// Height of a shape's upper side over one point of the plan, where it has one there.
+fn top_at(shape: &ColliderShape, x: f64, y: f64) -> Option<f64> {
+    match shape {
+        ColliderShape::Box(b) => {
+            let inside = (x - b.centre_m[0]).abs() <= b.size_m[0] / 2.0 && (y - b.centre_m[1]).abs() <= b.size_m[1] / 2.0;
+            inside.then_some(b.centre_m[2] + b.size_m[2] / 2.0)
+        }
+        ColliderShape::Sphere(s) => {
+            let (dx, dy) = (x - s.centre_m[0], y - s.centre_m[1]);
+            let rise = s.radius_m * s.radius_m - dx * dx - dy * dy;
+            (rise >= 0.0).then(|| s.centre_m[2] + rise.sqrt())
+        }
+        ColliderShape::Plane(p) => {
+            let [nx, ny, nz] = p.normal;
+            (nz > 1e-6).then(|| p.point_m[2] - (nx * (x - p.point_m[0]) + ny * (y - p.point_m[1])) / nz)
+        }
+    }
+}
