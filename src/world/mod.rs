@@ -6,6 +6,8 @@ pub mod camera;
 mod facts;
 pub mod measure;
 mod prepared;
+mod resolve;
 
 pub use facts::{Facts, ObjectFacts};
 pub use prepared::{Prepared, support_below};
+pub use resolve::{Resolved, resolve};
