@@ -1,5 +1,7 @@
 //! The arrows of ARCHITECTURE.md: data flows one way, and so do the `use` lines.
 
+#![allow(clippy::unwrap_used, reason = "a test reads its own sources")]
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
