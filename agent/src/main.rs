@@ -1,2 +1,13 @@
-//! The `phystalk` program.
-fn main() {}
+//! The `phystalk` program: words become edits, edits make versions, versions become pictures.
+
+#![allow(dead_code)] // rooms open one after another
+
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::environment::prepare();
+    cli::crash::install();
+    cli::main()
+}

@@ -1,0 +1,99 @@
+//! Kinds of failure and their exit codes: the only place where one becomes the other.
+
+use std::fmt::Display;
+use std::io;
+
+/// What went wrong, as scripts tell it apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The reader of our output went away; nothing to say, nothing failed.
+    Pipe,
+    /// A missing or unreadable scene, a turn not understood, no such version, a difference found.
+    Other,
+    /// The command line.
+    Usage,
+    /// A spec or a `--set`.
+    Spec,
+    /// No language model, or no key for it.
+    NoModel,
+    /// No adapter, device lost, out of memory.
+    Device,
+    /// The simulation could not be kept stable.
+    Unstable,
+    /// The store is damaged, newer than the program, or locked.
+    Store,
+    /// An expectation or a golden image failed.
+    Expectation,
+    /// A bug of the program.
+    Bug,
+    /// SIGINT.
+    Interrupted,
+    /// SIGTERM or SIGHUP.
+    Terminated,
+}
+
+impl Kind {
+    /// The process's exit code.
+    pub fn code(self) -> u8 {
+        match self {
+            Kind::Pipe => 0,
+            Kind::Other => 1,
+            Kind::Usage => 2,
+            Kind::Spec => 3,
+            Kind::NoModel => 4,
+            Kind::Device => 6,
+            Kind::Unstable => 7,
+            Kind::Store => 10,
+            Kind::Expectation => 11,
+            Kind::Bug => 70,
+            Kind::Interrupted => 130,
+            Kind::Terminated => 143,
+        }
+    }
+}
+
+/// A failure in the user's words: what, where, what was expected, what to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// Decides the exit code.
+    pub kind: Kind,
+    /// Empty where everything was already said.
+    pub message: String,
+}
+
+impl Failure {
+    /// A failure with its message.
+    pub fn new(kind: Kind, message: impl Display) -> Failure {
+        Failure { kind, message: message.to_string() }
+    }
+
+    /// One whose reason was already printed.
+    pub fn silent(kind: Kind) -> Failure {
+        Failure { kind, message: String::new() }
+    }
+
+    /// A failure of no special kind.
+    pub fn other(message: impl Display) -> Failure {
+        Failure::new(Kind::Other, message)
+    }
+
+    /// A file or folder that could not be used.
+    pub fn file(doing: &str, path: &std::path::Path, error: &io::Error) -> Failure {
+        Failure::other(format!("cannot {doing} {}: {error}", path.display()))
+    }
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Failure {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Failure::silent(Kind::Pipe),
+            _ => Failure::other(error),
+        }
+    }
+}
+
+impl From<phystalk::gpu::GpuError> for Failure {
+    fn from(error: phystalk::gpu::GpuError) -> Failure {
+        Failure::new(Kind::Device, error)
+    }
+}
