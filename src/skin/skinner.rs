@@ -1,0 +1,171 @@
+//! The two passes that move Gaussians with their particles.
+
+use super::{Bound, STATIC, Splats};
+use crate::gpu::{Access, Constant, Gpu, GpuError, Kernel, KernelSource, Recording};
+use crate::spec::Weights;
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// Version of what skinning computes; part of the keys of pictures.
+pub const VERSION: u32 = 1;
+
+/// Threads of a workgroup.
+const GROUP_SIZE: u32 = 128;
+
+/// Principal stretches a Gaussian is drawn with: beyond them it would be a needle or a flake that
+/// the eye takes for an error. Centres follow the motion without limit.
+pub const STRETCH: [f32; 2] = [0.3, 3.0];
+
+/// Below this determinant a blended gradient has no rotation worth the name.
+pub const SMALLEST_DETERMINANT: f32 = 1e-3;
+
+/// Newton steps at most; 6 suffice for stretches within [`STRETCH`], 14 for [`SMALLEST_DETERMINANT`].
+pub const POLAR_STEPS: u32 = 16;
+
+/// Sweeps of Jacobi's method: three bring a 3x3 matrix to f32 precision.
+pub const JACOBI_SWEEPS: u32 = 4;
+
+/// What both passes receive.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Immediates {
+    origin: [f32; 3],
+    count: u32,
+}
+
+/// Moves the Gaussians of one scene. At rest what it writes equals `Splats::rest` bit for bit.
+#[derive(Debug)]
+pub struct Skinner {
+    gpu: Gpu,
+    delta: Kernel,
+    blend: Kernel,
+    blend_bindings: wgpu::BindGroup,
+    rest_particles: wgpu::Buffer,
+    deltas: wgpu::Buffer,
+    particles: Immediates,
+    gaussians: Immediates,
+}
+
+impl Skinner {
+    /// Uploads the binding. `rest_particles` are the captured positions in the world, in the order
+    /// of the motion that [`Skinner::record`] will read.
+    pub fn new(gpu: &Gpu, splats: &Splats, bound: &Bound, rest_particles: &[Vec3], weights: Weights) -> Result<Skinner, GpuError> {
+        let packed = Packed::new(bound);
+        let origin = centre(rest_particles);
+        let relative: Vec<[f32; 4]> = rest_particles.iter().map(|&p| (p - origin).extend(0.0).to_array()).collect();
+        let deltas = gpu.storage::<[f32; 12]>("skin.deltas", rest_particles.len())?;
+        let blend = gpu.kernel(&blend_source(packed.vectors, weights));
+        let moving = gpu.storage_from("skin.moving", &packed.moving)?;
+        let index = gpu.storage_from("skin.particle", &packed.index)?;
+        let weight = gpu.storage_from("skin.weight", &packed.weight)?;
+        let buffers = [&moving, &index, &weight, &deltas, &splats.rest, &splats.geometry];
+        Ok(Skinner {
+            delta: gpu.kernel(&delta_source(weights)),
+            blend_bindings: gpu.bind(&blend, &buffers),
+            blend,
+            rest_particles: gpu.storage_from("skin.rest_particles", &relative)?,
+            deltas,
+            particles: Immediates { origin: origin.to_array(), count: rest_particles.len() as u32 },
+            gaussians: Immediates { origin: origin.to_array(), count: packed.moving.len() as u32 },
+            gpu: gpu.clone(),
+        })
+    }
+
+    /// Records the passes that read `motion` (8 u32 a particle, see the solver) and write `Splats::geometry`
+    /// of the Gaussians that follow particles. Static Gaussians are not touched.
+    pub fn record(&self, motion: &wgpu::Buffer, recording: &mut Recording) {
+        if self.gaussians.count == 0 || self.particles.count == 0 {
+            return;
+        }
+        let bindings = self.gpu.bind(&self.delta, &[motion, &self.rest_particles, &self.deltas]);
+        recording.dispatch_with(&self.delta, &bindings, &self.particles, groups(self.particles.count));
+        recording.dispatch_with(&self.blend, &self.blend_bindings, &self.gaussians, groups(self.gaussians.count));
+    }
+}
+
+/// The binding without the static Gaussians, in groups of four neighbours.
+struct Packed {
+    vectors: u32,
+    moving: Vec<u32>,
+    index: Vec<[u32; 4]>,
+    weight: Vec<[f32; 4]>,
+}
+
+impl Packed {
+    fn new(bound: &Bound) -> Packed {
+        let k = bound.neighbours.max(1) as usize;
+        let vectors = k.div_ceil(4);
+        let mut packed = Packed { vectors: vectors as u32, moving: Vec::new(), index: Vec::new(), weight: Vec::new() };
+        for (g, (index, weight)) in bound.index.chunks_exact(k).zip(bound.weight.chunks_exact(k)).enumerate() {
+            if index[0] == STATIC {
+                continue;
+            }
+            packed.moving.push(g as u32);
+            for v in 0..vectors {
+                let slot = |s: usize| v * 4 + s;
+                packed.index.push(std::array::from_fn(|s| index.get(slot(s)).copied().unwrap_or(index[0])));
+                packed.weight.push(std::array::from_fn(|s| weight.get(slot(s)).copied().unwrap_or(0.0)));
+            }
+        }
+        packed
+    }
+}
+
+/// Positions are taken relative to their centre, so that a scene far from the origin loses no digits.
+pub(super) fn centre(points: &[Vec3]) -> Vec3 {
+    let sum = points.iter().fold(glam::DVec3::ZERO, |sum, p| sum + p.as_dvec3());
+    (sum / points.len().max(1) as f64).as_vec3()
+}
+
+/// Workgroups for `count` threads, folded into two dimensions where one has not enough.
+fn groups(count: u32) -> [u32; 3] {
+    let groups = count.div_ceil(GROUP_SIZE);
+    let rows = groups.div_ceil(65_535).max(1);
+    [groups.div_ceil(rows), rows, 1]
+}
+
+const AFFINE: (&str, &str) = ("skin/affine.wgsl", include_str!("../../shaders/skin/affine.wgsl"));
+const DELTA: (&str, &str) = ("skin/delta.wgsl", include_str!("../../shaders/skin/delta.wgsl"));
+const ROTATION: (&str, &str) = ("skin/rotation.wgsl", include_str!("../../shaders/skin/rotation.wgsl"));
+const BLEND: (&str, &str) = ("skin/blend.wgsl", include_str!("../../shaders/skin/blend.wgsl"));
+
+fn delta_source(weights: Weights) -> KernelSource {
+    KernelSource {
+        label: "skin.delta",
+        entry: "main",
+        parts: vec![AFFINE, DELTA],
+        constants: vec![("GROUP_SIZE", Constant::U32(GROUP_SIZE)), ("PAPER", Constant::Bool(weights == Weights::Paper))],
+        bindings: vec![Access::Read, Access::Read, Access::Write],
+        immediate_bytes: size_of::<Immediates>() as u32,
+    }
+}
+
+fn blend_source(vectors: u32, weights: Weights) -> KernelSource {
+    KernelSource {
+        label: "skin.blend",
+        entry: "main",
+        parts: vec![AFFINE, ROTATION, BLEND],
+        constants: vec![
+            ("GROUP_SIZE", Constant::U32(GROUP_SIZE)),
+            ("VECTORS", Constant::U32(vectors)),
+            ("PAPER", Constant::Bool(weights == Weights::Paper)),
+            ("STRETCH_LOW", Constant::F32(STRETCH[0])),
+            ("STRETCH_HIGH", Constant::F32(STRETCH[1])),
+            ("SMALLEST_DETERMINANT", Constant::F32(SMALLEST_DETERMINANT)),
+            ("POLAR_STEPS", Constant::U32(POLAR_STEPS)),
+            ("JACOBI_SWEEPS", Constant::U32(JACOBI_SWEEPS)),
+        ],
+        bindings: vec![Access::Read, Access::Read, Access::Read, Access::Read, Access::Read, Access::Write],
+        immediate_bytes: size_of::<Immediates>() as u32,
+    }
+}
+
+/// Every pass of this room, in the forms that K = 8 and both kinds of weights give.
+pub fn kernels() -> Vec<KernelSource> {
+    [Weights::Exact, Weights::Paper].into_iter().flat_map(|weights| [delta_source(weights), blend_source(2, weights)]).collect()
+}
+
+/// All WGSL of this room, for the keys of stages.
+pub fn shader_text() -> String {
+    kernels().iter().map(KernelSource::wgsl).collect()
+}

@@ -1,0 +1,134 @@
+//! Skinning in plain Rust: what the two passes compute, one particle or Gaussian at a time.
+
+use super::skinner::{POLAR_STEPS, SMALLEST_DETERMINANT, STRETCH};
+use super::{Bound, STATIC};
+use crate::spec::Weights;
+use glam::{Mat3, Quat, Vec3};
+use half::f16;
+
+/// What a particle's surroundings do beyond staying: x -> x + offset + linear (x - origin).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Delta {
+    /// G - I.
+    pub linear: Mat3,
+    /// Metres.
+    pub offset: Vec3,
+}
+
+impl Delta {
+    /// Rest.
+    pub const ZERO: Delta = Delta { linear: Mat3::ZERO, offset: Vec3::ZERO };
+
+    fn is_finite(self) -> bool {
+        self.linear.is_finite() && self.offset.is_finite()
+    }
+}
+
+/// The eight words in which the solver gives a particle's motion: its position as f32, then G - I as
+/// halves, rows first.
+pub fn pack_motion(position: Vec3, linear: Mat3) -> [u32; 8] {
+    let rows = linear.transpose().to_cols_array();
+    let half = |i: usize| rows.get(i).map_or(0, |&v| u32::from(f16::from_f32(v).to_bits()));
+    let [x, y, z] = position.to_array().map(f32::to_bits);
+    let pair = |i: usize| half(i) | half(i + 1) << 16;
+    [x, y, z, pair(0), pair(2), pair(4), pair(6), pair(8)]
+}
+
+/// Pass `skin.delta`: the map of one particle from its motion and its captured position.
+pub fn delta(motion: [u32; 8], rest: Vec3, origin: Vec3, weights: Weights) -> Delta {
+    let half = |i: usize| f16::from_bits((motion[3 + i / 2] >> (16 * (i % 2))) as u16).to_f32();
+    let linear = Mat3::from_cols_array(&std::array::from_fn(half)).transpose();
+    let position = Vec3::new(f32::from_bits(motion[0]), f32::from_bits(motion[1]), f32::from_bits(motion[2]));
+    of(position, linear, rest, origin, weights)
+}
+
+/// The map of one particle from its position and G - I in full precision.
+pub fn of(position: Vec3, linear: Mat3, rest: Vec3, origin: Vec3, weights: Weights) -> Delta {
+    let from_origin = rest - origin;
+    let moved = position - origin - from_origin;
+    let offset = if weights == Weights::Paper { moved } else { moved - linear * from_origin };
+    Delta { linear, offset }
+}
+
+/// Pass `skin.blend`: the record of one Gaussian (see [`super::Splats`]) from its rest's record.
+pub fn blend(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta], origin: Vec3, weights: Weights) -> [f32; 16] {
+    let k = bound.neighbours as usize;
+    let index = &bound.index[gaussian * k..(gaussian + 1) * k];
+    let weight = &bound.weight[gaussian * k..(gaussian + 1) * k];
+    if index[0] == STATIC {
+        return *rest;
+    }
+    let nearest = deltas[index[0] as usize];
+    let sum = index.iter().zip(weight).fold(Delta::ZERO, |sum, (&i, &w)| {
+        let d = deltas[i as usize];
+        Delta { linear: sum.linear + d.linear * w, offset: sum.offset + d.offset * w }
+    });
+    let d = [sum, nearest].into_iter().find(|d| d.is_finite()).unwrap_or(Delta::ZERO);
+    let mut record = *rest;
+    let centre = Vec3::from_slice(rest);
+    let moved = if weights == Weights::Paper { d.offset } else { d.offset + d.linear * (centre - origin) };
+    record[..3].copy_from_slice(&(centre + moved).to_array());
+    if d.linear != Mat3::ZERO {
+        deform(&mut record, d, nearest, weights);
+    }
+    record
+}
+
+/// Turns and stretches a record's covariance and the frame of its spherical harmonics.
+fn deform(record: &mut [f32; 16], d: Delta, nearest: Delta, weights: Weights) {
+    let mut f = Mat3::IDENTITY + d.linear;
+    if weights == Weights::Exact {
+        let candidates = [f, Mat3::IDENTITY + nearest.linear];
+        f = candidates.into_iter().find(|f| f.is_finite() && f.determinant() >= SMALLEST_DETERMINANT).unwrap_or(Mat3::IDENTITY);
+        let r = polar_rotation(f);
+        f = limited(f, r);
+        let turn = (Quat::from_mat3(&r) * Quat::from_slice(&record[12..])).normalize();
+        turn.write_to_slice(&mut record[12..]);
+    }
+    let [xx, xy, xz, yy, yz, zz] = [record[4], record[5], record[6], record[7], record[8], record[9]];
+    let c = f * Mat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]) * f.transpose();
+    record[4..10].copy_from_slice(&[c.x_axis.x, c.x_axis.y, c.x_axis.z, c.y_axis.y, c.y_axis.z, c.z_axis.z]);
+}
+
+/// The rotation R of F = R S for a positive determinant, by Newton's iteration (Higham 1986).
+pub fn polar_rotation(f: Mat3) -> Mat3 {
+    let mut r = f;
+    for _ in 0..POLAR_STEPS {
+        let next = (r + r.inverse().transpose()) * 0.5;
+        let change: f32 = (next - r).to_cols_array().iter().map(|v| v * v).sum();
+        r = next;
+        if change < 1e-12 {
+            break;
+        }
+    }
+    r
+}
+
+/// F with its principal stretches held within [`STRETCH`].
+fn limited(f: Mat3, r: Mat3) -> Mat3 {
+    let (stretch, axes) = eigen(r.transpose() * f);
+    let held = stretch.clamp(Vec3::splat(STRETCH[0]), Vec3::splat(STRETCH[1]));
+    if held == stretch { f } else { r * axes * Mat3::from_diagonal(held) * axes.transpose() }
+}
+
+/// Eigenvalues and vectors of a symmetric matrix, by Jacobi's method.
+fn eigen(matrix: Mat3) -> (Vec3, Mat3) {
+    let mut s = (matrix + matrix.transpose()) * 0.5;
+    let mut v = Mat3::IDENTITY;
+    for step in 0..3 * super::skinner::JACOBI_SWEEPS {
+        let (i, j) = [(0, 1), (0, 2), (1, 2)][step as usize % 3];
+        let off = s.col(i)[j];
+        if off.abs() < 1e-12 {
+            continue;
+        }
+        let theta = (s.col(j)[j] - s.col(i)[i]) / (2.0 * off);
+        let t = 1.0f32.copysign(theta) / (theta.abs() + (theta * theta + 1.0).sqrt());
+        let c = 1.0 / (t * t + 1.0).sqrt();
+        let mut turn = Mat3::IDENTITY;
+        (turn.col_mut(i)[i], turn.col_mut(j)[j]) = (c, c);
+        (turn.col_mut(j)[i], turn.col_mut(i)[j]) = (t * c, -t * c);
+        s = turn.transpose() * s * turn;
+        v *= turn;
+    }
+    (Vec3::new(s.x_axis.x, s.y_axis.y, s.z_axis.z), v)
+}
