@@ -1,7 +1,28 @@
 //! Gaussians: read and write formats, up axis, prune, select, the built-in demo scene.
 
+mod codec;
+mod error;
+mod file;
 mod frame;
 mod gaussians;
+mod info;
+mod neighbours;
+mod ply;
+mod ply_header;
+mod prune;
+mod select;
+mod splat;
+mod up;
 
+pub use codec::SH_C0;
+pub use error::SceneError;
+pub use file::{Format, Loaded, parse, read, write};
 pub use frame::SceneFrame;
 pub use gaussians::{Gaussians, morton_order};
+pub use info::{Bounds, SceneInfo, info};
+pub use prune::floaters;
+pub use select::select;
+pub use up::{UpGuess, guess_up};
+
+#[cfg(test)]
+mod tests;
