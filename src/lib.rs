@@ -3,6 +3,7 @@
 //! A [`spec::Spec`] says what to simulate. The stages prepare its scene, solve its motion and draw
 //! its pictures; only what changed runs again.
 
+pub mod export;
 pub mod gpu;
 pub mod scene;
 mod sink;

@@ -1,0 +1,53 @@
+//! PNG: 8 bits, sRGB.
+
+use super::raster::check;
+use super::{ExportError, Raster, write_atomic};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+use std::io;
+use std::path::Path;
+
+/// Writes an opaque picture of four bytes a pixel as PNG with three: fast compression, since frames
+/// are written as they are drawn.
+pub fn write_png(path: &Path, size: [u32; 2], rgba8: &[u8]) -> Result<(), ExportError> {
+    check(size, 4, rgba8.len())?;
+    let rgb: Vec<u8> = rgba8.as_chunks::<4>().0.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
+    write_atomic(path, |file| {
+        let encoder = PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive);
+        encoder.write_image(&rgb, size[0], size[1], ExtendedColorType::Rgb8).map_err(io::Error::other)
+    })
+}
+
+/// Reads a PNG of any kind as 8-bit RGBA.
+pub fn read_png(path: &Path) -> Result<Raster, ExportError> {
+    let failed = |reason: String| ExportError::Read { path: path.to_owned(), reason };
+    let bytes = std::fs::read(path).map_err(|e| failed(e.to_string()))?;
+    let picture = image::load_from_memory_with_format(&bytes, image::ImageFormat::Png).map_err(|e| failed(e.to_string()))?.into_rgba8();
+    Ok(Raster { size: [picture.width(), picture.height()], rgba8: picture.into_raw() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_again_and_the_bytes_are_the_same_twice() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = Raster { size: [5, 3], rgba8: (0..15).flat_map(|i: u8| [i * 17, 255 - i, i ^ 90, 255]).collect() };
+        let [a, b] = ["a.png", "deep/b.png"].map(|name| folder.path().join(name));
+        write_png(&a, picture.size, &picture.rgba8).unwrap();
+        write_png(&b, picture.size, &picture.rgba8).unwrap();
+        assert_eq!(read_png(&a).unwrap(), picture);
+        assert_eq!(std::fs::read(&a).unwrap(), std::fs::read(&b).unwrap());
+    }
+
+    #[test]
+    fn what_is_no_picture_says_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("notes.png");
+        std::fs::write(&path, b"not a picture").unwrap();
+        assert!(read_png(&path).unwrap_err().to_string().contains("notes.png"));
+        assert!(read_png(&folder.path().join("none.png")).is_err());
+        assert!(write_png(&path, [4, 4], &[0; 12]).unwrap_err().to_string().contains("64"));
+    }
+}

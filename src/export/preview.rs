@@ -1,0 +1,230 @@
+//! Animated WebP: what a README and a chat window can show.
+
+use super::atomic::Pending;
+use super::raster::{check, fitted, shrunk};
+use super::{ExportError, Raster};
+use crate::Frame;
+use image::codecs::webp::WebPEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use std::io::{self, Seek, SeekFrom, Write};
+use std::path::Path;
+
+/// Widest a preview is.
+const WIDTH: u32 = 640;
+
+/// Most pictures a second; a run of more frames a second is thinned to it.
+const FPS: f64 = 25.0;
+
+/// How long the last picture stands before the animation starts again, milliseconds.
+const LAST_MS: u32 = 600;
+
+/// An animated WebP that grows by one frame at a time. Of each frame only the rectangle that changed
+/// is kept; the file takes its name when it is finished.
+#[derive(Debug)]
+pub struct Preview {
+    file: Pending,
+    step: u32,
+    frame_ms: u32,
+    size: Option<[u32; 2]>,
+    shown: Option<Raster>,
+    /// The picture not yet written, since its duration is known only when the next one comes.
+    waiting: Option<Patch>,
+}
+
+/// A changed rectangle, encoded.
+#[derive(Debug)]
+struct Patch {
+    corner: [u32; 2],
+    size: [u32; 2],
+    chunk: Vec<u8>,
+    duration_ms: u32,
+}
+
+impl Preview {
+    /// Opens a preview of frames that come `fps` times a second.
+    pub fn create(path: &Path, fps: f64) -> Result<Preview, ExportError> {
+        let step = (fps / FPS).round().max(1.0) as u32;
+        let frame_ms = (1000.0 * f64::from(step) / fps.max(1e-3)).round().clamp(1.0, 60_000.0) as u32;
+        Ok(Preview { file: Pending::create(path)?, step, frame_ms, size: None, shown: None, waiting: None })
+    }
+
+    /// Adds a frame, if it is one of those that are kept. Frames come in order.
+    pub fn add(&mut self, frame: &Frame) -> Result<(), ExportError> {
+        if !frame.index.is_multiple_of(self.step) {
+            return Ok(());
+        }
+        check(frame.size, 4, frame.rgba8.len())?;
+        match self.size {
+            None => self.open(frame.size)?,
+            Some(expected) if expected != frame.size => {
+                return Err(ExportError::Size { path: self.file.path().to_owned(), expected, got: frame.size });
+            }
+            Some(_) => {}
+        }
+        let picture = shrunk(frame.size, &frame.rgba8, fitted(frame.size, WIDTH));
+        match (changed(self.shown.as_ref(), &picture), &mut self.waiting) {
+            (None, Some(waiting)) => waiting.duration_ms += self.frame_ms,
+            (changed, _) => {
+                self.flush()?;
+                let [x, y, width, height] = changed.unwrap_or([0, 0, 1, 1]);
+                let chunk = encode(&picture, [x, y, width, height]).map_err(|e| ExportError::write(self.file.path(), e))?;
+                self.waiting = Some(Patch { corner: [x, y], size: [width, height], chunk, duration_ms: self.frame_ms });
+            }
+        }
+        self.shown = Some(picture);
+        Ok(())
+    }
+
+    /// Writes the last picture and the sizes, and gives the file its name. Nothing appears where no
+    /// frame came.
+    pub fn finish(mut self) -> Result<(), ExportError> {
+        let Some(waiting) = &mut self.waiting else { return Ok(()) };
+        waiting.duration_ms += LAST_MS;
+        self.flush()?;
+        self.file.with(|file| {
+            let length = file.stream_position()?;
+            file.seek(SeekFrom::Start(4))?;
+            file.write_all(&u32::try_from(length - 8).unwrap_or(u32::MAX).to_le_bytes())
+        })?;
+        self.file.finish()
+    }
+
+    /// RIFF header (its size is written at the end), VP8X with the animation flag, ANIM: background
+    /// white, repeated for ever.
+    fn open(&mut self, size: [u32; 2]) -> Result<(), ExportError> {
+        self.size = Some(size);
+        let [width, height] = fitted(size, WIDTH);
+        self.file.with(|file| {
+            file.write_all(b"RIFF\0\0\0\0WEBPVP8X")?;
+            file.write_all(&10u32.to_le_bytes())?;
+            file.write_all(&[0x02, 0, 0, 0])?;
+            file.write_all(&u24(width - 1))?;
+            file.write_all(&u24(height - 1))?;
+            file.write_all(b"ANIM")?;
+            file.write_all(&6u32.to_le_bytes())?;
+            file.write_all(&[255, 255, 255, 255, 0, 0])
+        })
+    }
+
+    /// Writes the waiting picture as an ANMF chunk that replaces what it covers.
+    fn flush(&mut self) -> Result<(), ExportError> {
+        let Some(patch) = self.waiting.take() else { return Ok(()) };
+        self.file.with(|file| {
+            file.write_all(b"ANMF")?;
+            file.write_all(&(16 + patch.chunk.len() as u32).to_le_bytes())?;
+            for value in [patch.corner[0] / 2, patch.corner[1] / 2, patch.size[0] - 1, patch.size[1] - 1, patch.duration_ms.min(0xff_ffff)] {
+                file.write_all(&u24(value))?;
+            }
+            const NO_BLENDING: u8 = 0x02;
+            file.write_all(&[NO_BLENDING])?;
+            file.write_all(&patch.chunk)
+        })
+    }
+}
+
+/// The low three bytes, as the container wants its numbers.
+fn u24(value: u32) -> [u8; 3] {
+    let [a, b, c, _] = value.to_le_bytes();
+    [a, b, c]
+}
+
+/// The rectangle (x, y, width, height) that differs, its corner on even pixels as the container
+/// asks; all of the first picture; none where nothing changed.
+fn changed(before: Option<&Raster>, now: &Raster) -> Option<[u32; 4]> {
+    let [width, height] = now.size;
+    let Some(before) = before else { return Some([0, 0, width, height]) };
+    let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
+    for (i, (a, b)) in before.rgba8.as_chunks::<4>().0.iter().zip(now.rgba8.as_chunks::<4>().0).enumerate() {
+        if a != b {
+            let at = [i as u32 % width, i as u32 / width];
+            low = [low[0].min(at[0]), low[1].min(at[1])];
+            high = [high[0].max(at[0]), high[1].max(at[1])];
+        }
+    }
+    let corner = low.map(|v| v & !1);
+    (low[0] != u32::MAX).then(|| [corner[0], corner[1], high[0] + 1 - corner[0], high[1] + 1 - corner[1]])
+}
+
+/// The VP8L chunk of a rectangle, header and padding included.
+fn encode(picture: &Raster, [x, y, width, height]: [u32; 4]) -> io::Result<Vec<u8>> {
+    let rgb: Vec<u8> = (y..y + height)
+        .flat_map(|row| {
+            let start = (row as usize * picture.size[0] as usize + x as usize) * 4;
+            picture.rgba8[start..start + width as usize * 4].as_chunks::<4>().0.iter().flat_map(|p| [p[0], p[1], p[2]])
+        })
+        .collect();
+    let mut bytes = Vec::new();
+    WebPEncoder::new_lossless(&mut bytes).write_image(&rgb, width, height, ExtendedColorType::Rgb8).map_err(io::Error::other)?;
+    // A simple file is RIFF, its size, WEBP, and then the one chunk.
+    Ok(bytes.split_off(12))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::AnimationDecoder;
+    use image::codecs::webp::WebPDecoder;
+
+    /// A bright square that moves over a shaded ground, still for the last third.
+    fn frame(index: u32, size: [u32; 2]) -> Frame {
+        let mut picture = Raster::filled(size, [230, 230, 240, 255]);
+        for y in 0..size[1] {
+            for x in 0..size[0] {
+                picture.pixel_mut(x, y).unwrap()[2] = (120 + (x * 3 + y * 2) % 90) as u8;
+            }
+        }
+        let at = index.min(8) * 7;
+        picture.paste(&Raster::filled([20, 20], [200, 30, 40, 255]), at, size[1] / 3 + at / 2);
+        Frame { index, time_s: f64::from(index) / 50.0, size, rgba8: picture.rgba8.into(), depth: None, id: None }
+    }
+
+    fn decoded(path: &Path) -> Vec<(Raster, u32)> {
+        let decoder = WebPDecoder::new(std::io::BufReader::new(std::fs::File::open(path).unwrap())).unwrap();
+        let frames = decoder.into_frames().collect_frames().unwrap();
+        frames
+            .into_iter()
+            .map(|f| {
+                let (ms, _) = f.delay().numer_denom_ms();
+                let picture = f.into_buffer();
+                (Raster { size: [picture.width(), picture.height()], rgba8: picture.into_raw() }, ms)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn plays_what_was_added_every_second_frame_at_fifty_a_second() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("preview.webp");
+        let mut preview = Preview::create(&path, 50.0).unwrap();
+        (0..13).for_each(|i| preview.add(&frame(i, [160, 90])).unwrap());
+        assert!(!path.exists(), "nothing under its name before it is whole");
+        preview.finish().unwrap();
+        let pictures = decoded(&path);
+        // Frames 0, 2, 4, 6, 8; those after 8 look the same and prolong it.
+        assert_eq!(pictures.iter().map(|p| p.1).collect::<Vec<_>>(), [40, 40, 40, 40, 3 * 40 + 600]);
+        for (k, (picture, _)) in pictures.iter().enumerate() {
+            assert_eq!(picture.rgba8, *frame(2 * k as u32, [160, 90]).rgba8, "picture {k}");
+        }
+    }
+
+    #[test]
+    fn large_frames_are_shrunk_and_another_size_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("preview.webp");
+        let mut preview = Preview::create(&path, 25.0).unwrap();
+        (0..2).for_each(|i| preview.add(&frame(i, [1280, 720])).unwrap());
+        let error = preview.add(&frame(2, [640, 360])).unwrap_err().to_string();
+        assert!(error.contains("640x360") && error.contains("1280x720"), "{error}");
+        preview.finish().unwrap();
+        assert!(decoded(&path).iter().all(|(p, _)| p.size == [640, 360]));
+    }
+
+    #[test]
+    fn nothing_added_leaves_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("preview.webp");
+        Preview::create(&path, 50.0).unwrap().finish().unwrap();
+        drop(Preview::create(&path, 50.0).unwrap());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}
