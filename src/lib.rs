@@ -5,6 +5,7 @@
 
 pub mod export;
 pub mod gpu;
+pub mod proxy;
 pub mod scene;
 mod sink;
 pub mod skin;

@@ -1,0 +1,52 @@
+//! A box of cubic voxels in the world.
+
+use glam::{UVec3, Vec3};
+
+/// Voxels of one edge length; x runs fastest, then y, then z.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Grid {
+    /// The lowest corner of the first voxel, metres.
+    pub low: Vec3,
+    /// Edge of a voxel, metres.
+    pub voxel_m: f32,
+    /// Voxels along each axis.
+    pub size: UVec3,
+}
+
+impl Grid {
+    /// How many voxels there are.
+    pub fn len(&self) -> usize {
+        self.size.x as usize * self.row_count()
+    }
+
+    /// Rows along x: y and z together.
+    pub fn row_count(&self) -> usize {
+        self.size.y as usize * self.size.z as usize
+    }
+
+    /// Voxels in one horizontal slab.
+    pub fn slab(&self) -> usize {
+        self.size.x as usize * self.size.y as usize
+    }
+
+    /// Where a voxel is stored.
+    pub fn index(&self, voxel: UVec3) -> usize {
+        (voxel.z as usize * self.size.y as usize + voxel.y as usize) * self.size.x as usize + voxel.x as usize
+    }
+
+    /// The voxel stored at an index.
+    pub fn voxel(&self, index: usize) -> UVec3 {
+        let (row, x) = (index / self.size.x as usize, index % self.size.x as usize);
+        UVec3::new(x as u32, (row % self.size.y as usize) as u32, (row / self.size.y as usize) as u32)
+    }
+
+    /// The middle of a voxel, metres.
+    pub fn centre(&self, voxel: UVec3) -> Vec3 {
+        self.low + (voxel.as_vec3() + 0.5) * self.voxel_m
+    }
+
+    /// Volume of one voxel, cubic metres.
+    pub fn voxel_volume_m3(&self) -> f64 {
+        f64::from(self.voxel_m).powi(3)
+    }
+}
