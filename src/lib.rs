@@ -11,6 +11,7 @@ mod sink;
 pub mod skin;
 pub mod spec;
 pub mod stages;
+pub mod store;
 pub mod world;
 
 pub use sink::{Discard, Frame, Progress, Sink, Stop};

@@ -3,6 +3,30 @@
 //! A [`Spec`] is complete by itself: nothing outside it changes the motion. Nothing mutates one but
 //! a list of [`Edit`]s, which is applied whole or not at all.
 
+mod canonical;
+mod check;
+mod diff;
+mod edit;
+mod error;
+pub mod expect;
+mod gloss;
+mod later;
+pub mod limits;
+mod path;
+mod place;
+pub mod presets;
+mod read;
+pub mod schema;
+mod spelling;
 mod types;
+mod validate;
 
+pub use canonical::number;
+pub use diff::{Change, unit};
+pub use error::{SpecError, SpecErrorKind, nearest};
+pub use later::material as material_to_come;
+pub use path::{LISTS, is_name, name_from_file};
 pub use types::*;
+
+#[cfg(test)]
+mod tests;

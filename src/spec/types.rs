@@ -3,6 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::limits::{self, each, length};
+use super::path::NAME_PATTERN;
+
 /// A value that may be left to the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Auto<T> {
@@ -26,11 +29,14 @@ impl<T: Copy> Auto<T> {
 /// One simulation, whole.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(title = "PhysTalk spec")]
 pub struct Spec {
     /// Version of this format: 1.
+    #[schemars(range(min = 1, max = limits::FORMAT))]
     pub format: u32,
     /// Seed of everything random: sampling jitter, dither, expressions.
     #[serde(default = "default_seed")]
+    #[schemars(range(max = limits::SEED))]
     pub seed: u64,
     /// The captured scene.
     pub scene: Scene,
@@ -44,18 +50,23 @@ pub struct Spec {
     #[serde(default)]
     pub solver: Solver,
     /// The things that move, by name.
-    #[serde(default, rename = "object")]
+    #[schemars(length(min = 1, max = limits::OBJECTS))]
+    #[serde(rename = "object")]
     pub objects: Vec<Object>,
     /// What holds parts of objects.
+    #[schemars(length(max = limits::ENTRIES))]
     #[serde(default, rename = "pin", skip_serializing_if = "Vec::is_empty")]
     pub pins: Vec<Pin>,
     /// What objects collide with, beside the ground.
+    #[schemars(length(max = limits::ENTRIES))]
     #[serde(default, rename = "collider", skip_serializing_if = "Vec::is_empty")]
     pub colliders: Vec<Collider>,
     /// Accelerations over a span of time.
+    #[schemars(length(max = limits::ENTRIES))]
     #[serde(default, rename = "force", skip_serializing_if = "Vec::is_empty")]
     pub forces: Vec<Force>,
     /// What happens at an instant.
+    #[schemars(length(max = limits::ENTRIES))]
     #[serde(default, rename = "event", skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<Event>,
     /// How Gaussians follow particles.
@@ -68,6 +79,7 @@ pub struct Spec {
     #[serde(default)]
     pub output: Output,
     /// What must hold of the result.
+    #[schemars(length(max = limits::ENTRIES))]
     #[serde(default, rename = "expect", skip_serializing_if = "Vec::is_empty")]
     pub expectations: Vec<Expectation>,
 }
@@ -107,12 +119,14 @@ pub struct Scene {
     pub file: String,
     /// BLAKE3 of the file's bytes, recorded when the spec is made; a file that changed is refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String", regex(pattern = "^[0-9a-f]{64}$"))]
     pub blake3: Option<String>,
     /// Which axis of the file points up.
     #[serde(default)]
     pub up: Auto<Axis>,
     /// Metres in one unit of the file.
     #[serde(default = "one")]
+    #[schemars(range(min = limits::METRES_PER_UNIT.0, max = limits::METRES_PER_UNIT.1))]
     pub metres_per_unit: f64,
 }
 
@@ -125,8 +139,10 @@ fn one() -> f64 {
 #[serde(deny_unknown_fields, default)]
 pub struct Time {
     /// Seconds; `"auto"` is long enough to land and settle by ballistics, 2 to 8.
+    #[schemars(extend("minimum" = 0.0, "maximum" = limits::TIME_S))]
     pub duration_s: Auto<f64>,
     /// Frames a second.
+    #[schemars(range(min = 1, max = limits::FPS))]
     pub fps: u32,
 }
 
@@ -141,6 +157,7 @@ impl Default for Time {
 #[serde(deny_unknown_fields, default)]
 pub struct World {
     /// Acceleration of free fall, world frame.
+    #[schemars(transform = length(limits::GRAVITY_M_S2))]
     pub gravity_m_s2: [f64; 3],
     /// The ground plane.
     pub ground: Ground,
@@ -157,10 +174,13 @@ impl Default for World {
 #[serde(deny_unknown_fields, default)]
 pub struct Ground {
     /// Height of the plane; `"auto"` is the lowest centre of all objects' Gaussians as captured.
+    #[schemars(extend("minimum" = -limits::PLACE_M, "maximum" = limits::PLACE_M))]
     pub height_m: Auto<f64>,
     /// Coulomb coefficient.
+    #[schemars(range(min = 0.0, max = limits::FRICTION))]
     pub friction: f64,
     /// Share of the approaching speed that is given back, 0 to 1.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub restitution: f64,
 }
 
@@ -175,6 +195,7 @@ impl Default for Ground {
 #[serde(deny_unknown_fields, default)]
 pub struct Solver {
     /// Grid cells along the longest side of the objects; `"auto"` follows the quality.
+    #[schemars(extend("minimum" = limits::CELLS_ACROSS.0, "maximum" = limits::CELLS_ACROSS.1))]
     pub cells_across: Auto<u32>,
 }
 
@@ -183,8 +204,10 @@ pub struct Solver {
 #[serde(deny_unknown_fields)]
 pub struct BoxShape {
     /// Its centre.
+    #[schemars(transform = length(limits::PLACE_M))]
     pub centre_m: [f64; 3],
     /// Its whole edge lengths.
+    #[schemars(transform = each(limits::SIZE_M.0, limits::SIZE_M.1))]
     pub size_m: [f64; 3],
 }
 
@@ -193,8 +216,10 @@ pub struct BoxShape {
 #[serde(deny_unknown_fields)]
 pub struct SphereShape {
     /// Its centre.
+    #[schemars(transform = length(limits::PLACE_M))]
     pub centre_m: [f64; 3],
     /// Its radius.
+    #[schemars(range(min = limits::SIZE_M.0, max = limits::SIZE_M.1))]
     pub radius_m: f64,
 }
 
@@ -203,6 +228,7 @@ pub struct SphereShape {
 #[serde(deny_unknown_fields)]
 pub struct PlaneShape {
     /// A point of the plane.
+    #[schemars(transform = length(limits::PLACE_M))]
     pub point_m: [f64; 3],
     /// Points out of the solid side; need not be of unit length.
     pub normal: [f64; 3],
@@ -247,7 +273,9 @@ pub enum Rest {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Object {
-    /// Its name, `[a-z0-9_-]+`, unique.
+    /// Its name, `[a-z0-9_-]+`, unique; the scene file's name up to its first dot where none is given.
+    #[serde(default)]
+    #[schemars(regex(pattern = NAME_PATTERN), transform = limits::no_default)]
     pub name: String,
     /// Its Gaussians.
     #[serde(default)]
@@ -260,18 +288,22 @@ pub struct Object {
     pub material: Material,
     /// Moved by this before t = 0, after the rotation.
     #[serde(default)]
+    #[schemars(transform = length(limits::PLACE_M))]
     pub offset_m: [f64; 3],
     /// Turned about fixed x, then y, then z, through the captured centre of mass.
     #[serde(default)]
+    #[schemars(transform = each(-limits::ROTATE_DEG, limits::ROTATE_DEG))]
     pub rotate_deg: [f64; 3],
     /// What the captured pose means.
     #[serde(default)]
     pub rest: Rest,
     /// Velocity at t = 0.
     #[serde(default)]
+    #[schemars(transform = length(limits::SPEED_M_S))]
     pub velocity_m_s: [f64; 3],
     /// Angular velocity at t = 0 about the centre of mass.
     #[serde(default)]
+    #[schemars(transform = length(limits::SPIN_RAD_S))]
     pub spin_rad_s: [f64; 3],
     /// Which world axis is the object's front.
     #[serde(default = "plus_x")]
@@ -330,10 +362,13 @@ impl Default for Material {
 #[serde(deny_unknown_fields, default)]
 pub struct Elastic {
     /// Young's modulus E; `"auto"` is four times the self-buckling bound of the most slender part.
+    #[schemars(extend("minimum" = limits::YOUNG_PA.0, "maximum" = limits::YOUNG_PA.1))]
     pub young_pa: Auto<f64>,
     /// Poisson's ratio nu.
+    #[schemars(range(min = 0.0, max = limits::POISSON))]
     pub poisson: f64,
     /// Mass density rho.
+    #[schemars(range(min = limits::DENSITY_KG_M3.0, max = limits::DENSITY_KG_M3.1))]
     pub density_kg_m3: f64,
     /// The energy.
     pub model: ElasticModel,
@@ -350,9 +385,9 @@ impl Default for Elastic {
 #[serde(rename_all = "snake_case")]
 pub enum Region {
     /// Above this fraction of the object's height.
-    Above(f64),
+    Above(#[schemars(range(min = 0.0, max = 1.0))] f64),
     /// Below this fraction of the object's height.
-    Below(f64),
+    Below(#[schemars(range(min = 0.0, max = 1.0))] f64),
     /// In a box.
     Box(BoxShape),
     /// In a sphere.
@@ -376,6 +411,7 @@ pub enum Until {
 #[serde(deny_unknown_fields)]
 pub struct Pin {
     /// Its name, unique among pins.
+    #[schemars(regex(pattern = NAME_PATTERN))]
     pub name: String,
     /// The object it holds.
     pub object: String,
@@ -383,9 +419,11 @@ pub struct Pin {
     pub region: Region,
     /// From when.
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = limits::TIME_S))]
     pub from_s: f64,
     /// Until when.
     #[serde(default)]
+    #[schemars(extend("minimum" = 0.0, "maximum" = limits::TIME_S))]
     pub to_s: Until,
 }
 
@@ -406,14 +444,17 @@ pub enum ColliderShape {
 #[serde(deny_unknown_fields)]
 pub struct Collider {
     /// Its name, unique among colliders.
+    #[schemars(regex(pattern = NAME_PATTERN))]
     pub name: String,
     /// Where it is solid.
     pub shape: ColliderShape,
     /// Coulomb coefficient.
     #[serde(default = "default_friction")]
+    #[schemars(range(min = 0.0, max = limits::FRICTION))]
     pub friction: f64,
     /// Share of the approaching speed that is given back, 0 to 1.
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub restitution: f64,
 }
 
@@ -426,16 +467,20 @@ fn default_friction() -> f64 {
 #[serde(deny_unknown_fields)]
 pub struct Force {
     /// Its name, unique among forces.
+    #[schemars(regex(pattern = NAME_PATTERN))]
     pub name: String,
     /// The object it moves.
     pub object: String,
     /// From when.
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = limits::TIME_S))]
     pub from_s: f64,
     /// Until when.
     #[serde(default)]
+    #[schemars(extend("minimum" = 0.0, "maximum" = limits::TIME_S))]
     pub to_s: Until,
     /// World frame.
+    #[schemars(transform = length(limits::ACCELERATION_M_S2))]
     pub acceleration_m_s2: [f64; 3],
 }
 
@@ -445,16 +490,20 @@ pub struct Force {
 pub struct Event {
     /// Its name, unique among events; `event1`, `event2`, … where none is given.
     #[serde(default)]
+    #[schemars(regex(pattern = NAME_PATTERN), transform = limits::no_default)]
     pub name: String,
     /// When.
+    #[schemars(range(min = 0.0, max = limits::TIME_S))]
     pub at_s: f64,
     /// To which object.
     pub object: String,
     /// Added to the velocity of all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "[f64; 3]", transform = length(limits::SPEED_M_S))]
     pub push_m_s: Option<[f64; 3]>,
     /// Replaces the velocity of all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "[f64; 3]", transform = length(limits::SPEED_M_S))]
     pub velocity_m_s: Option<[f64; 3]>,
 }
 
@@ -474,6 +523,7 @@ pub enum Weights {
 #[serde(deny_unknown_fields, default)]
 pub struct Skin {
     /// How many particles each Gaussian follows, 1 to 16.
+    #[schemars(range(min = 1, max = limits::NEIGHBOURS))]
     pub neighbours: u32,
     /// How they are weighted.
     pub weights: Weights,
@@ -490,14 +540,18 @@ impl Default for Skin {
 #[serde(deny_unknown_fields)]
 pub struct Camera {
     /// Where it stands.
+    #[schemars(transform = length(limits::PLACE_M))]
     pub eye_m: [f64; 3],
     /// What it looks at.
+    #[schemars(transform = length(limits::PLACE_M))]
     pub target_m: [f64; 3],
     /// Vertical field of view.
     #[serde(default = "default_fov")]
+    #[schemars(range(min = limits::FOV_DEG.0, max = limits::FOV_DEG.1))]
     pub fov_deg: f64,
     /// Turns about the vertical through the target; counter-clockwise seen from above.
     #[serde(default)]
+    #[schemars(range(min = -limits::ORBIT_DEG_S, max = limits::ORBIT_DEG_S))]
     pub orbit_deg_s: f64,
 }
 
@@ -510,8 +564,10 @@ fn default_fov() -> f64 {
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
     /// Width and height in pixels; `"auto"` is 1280 x 720, in draft 640 x 360.
+    #[schemars(transform = each(limits::PICTURE.0, limits::PICTURE.1))]
     pub size: Auto<[u32; 2]>,
     /// `#rrggbb`, sRGB.
+    #[schemars(regex(pattern = limits::COLOUR_PATTERN))]
     pub background: String,
 }
 

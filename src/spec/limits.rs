@@ -1,0 +1,96 @@
+//! What values a spec may hold. The JSON Schema carries these numbers, and reading checks against
+//! the schema, so that documentation, schema and reader cannot disagree.
+
+use schemars::Schema;
+use serde_json::{Value, json};
+
+/// The newest format that this program reads.
+pub const FORMAT: u32 = 1;
+/// Largest seed: the largest whole number that every JSON reader keeps exactly.
+pub const SEED: u64 = (1 << 53) - 1;
+/// Objects in one spec.
+pub const OBJECTS: u32 = 64;
+/// Pins, colliders, forces, events and expectations, each.
+pub const ENTRIES: u32 = 256;
+/// Length of a name.
+pub const NAME: usize = 64;
+/// Scale of a scene.
+pub const METRES_PER_UNIT: (f64, f64) = (1e-6, 1e6);
+/// Longest simulation and latest event.
+pub const TIME_S: f64 = 600.0;
+/// Frames a second.
+pub const FPS: u32 = 1000;
+/// Magnitude of gravity: forty times Jupiter's.
+pub const GRAVITY_M_S2: f64 = 1e3;
+/// Magnitude of a force's acceleration.
+pub const ACCELERATION_M_S2: f64 = 1e4;
+/// Magnitude of a velocity: beyond it a step of the solver crosses a cell.
+pub const SPEED_M_S: f64 = 200.0;
+/// Magnitude of a spin, about 160 turns a second.
+pub const SPIN_RAD_S: f64 = 1e3;
+/// Distance of anything from the origin: beyond it f32 is coarser than a centimetre.
+pub const PLACE_M: f64 = 1e5;
+/// Edge lengths and radii.
+pub const SIZE_M: (f64, f64) = (1e-6, 1e5);
+/// Rotation before the start, a hundred turns.
+pub const ROTATE_DEG: f64 = 36e3;
+/// Coulomb coefficient.
+pub const FRICTION: f64 = 10.0;
+/// Young's modulus, from a weak gel to a diamond.
+pub const YOUNG_PA: (f64, f64) = (1e2, 1e12);
+/// Poisson's ratio: explicit steps cannot follow the volume waves of 0.5.
+pub const POISSON: f64 = 0.49;
+/// Density, from the air to osmium.
+pub const DENSITY_KG_M3: (f64, f64) = (1.0, 2e4);
+/// Grid cells along the longest side.
+pub const CELLS_ACROSS: (u32, u32) = (4, 1024);
+/// Particles that a Gaussian follows.
+pub const NEIGHBOURS: u32 = 16;
+/// Vertical field of view.
+pub const FOV_DEG: (f64, f64) = (1.0, 170.0);
+/// Rate of a camera's orbit.
+pub const ORBIT_DEG_S: f64 = 3600.0;
+/// Width and height of a picture, pixels.
+pub const PICTURE: (u32, u32) = (16, 8192);
+/// What the schema says of a colour.
+pub(super) const COLOUR_PATTERN: &str = "^#[0-9a-fA-F]{6}$";
+/// Longest text of a spec that is read, bytes.
+pub const TEXT_BYTES: u64 = 1 << 20;
+
+/// Key that our schemas carry for vectors: the largest Euclidean length. Validators that do not
+/// know it still see the same bound on each component.
+pub const MAX_NORM: &str = "x-maxNorm";
+
+/// Bounds the Euclidean length of a vector.
+pub(super) fn length(limit: f64) -> impl FnMut(&mut Schema) {
+    move |schema| {
+        bound_items(schema, json!(-limit), json!(limit));
+        schema.insert(MAX_NORM.to_owned(), json!(limit));
+    }
+}
+
+/// Bounds each component of a vector.
+pub(super) fn each<T: Into<Value>>(low: T, high: T) -> impl FnMut(&mut Schema) {
+    let (low, high): (Value, Value) = (low.into(), high.into());
+    move |schema| bound_items(schema, low.clone(), high.clone())
+}
+
+/// Leaves a default out of the schema: an empty name stands for one that the reader makes up.
+pub(super) fn no_default(schema: &mut Schema) {
+    schema.remove("default");
+}
+
+/// Sets the bounds of the items of an array, which may be one of several alternatives.
+fn bound_items(schema: &mut Schema, low: Value, high: Value) {
+    fn array_in(schema: &mut serde_json::Map<String, Value>) -> Option<&mut Value> {
+        if schema.contains_key("items") {
+            return schema.get_mut("items");
+        }
+        let alternatives = schema.get_mut("anyOf")?.as_array_mut()?;
+        alternatives.iter_mut().filter_map(Value::as_object_mut).find_map(array_in)
+    }
+    if let Some(items) = schema.as_object_mut().and_then(array_in) {
+        items["minimum"] = low;
+        items["maximum"] = high;
+    }
+}
