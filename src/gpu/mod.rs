@@ -6,10 +6,18 @@
 
 mod buffers;
 mod device;
+mod extent;
 mod kernel;
 mod recording;
+mod scan;
+mod sort;
+#[cfg(test)]
+mod twin;
 
 pub use buffers::Readback;
 pub use device::{DeviceRequest, Gpu, GpuError, Tier, list_adapters};
+pub use extent::{Blocks, Extent, ExtentPass, THREADS, fold};
 pub use kernel::{Access, Constant, Kernel, KernelSource};
 pub use recording::{PassTime, Recording, Step};
+pub use scan::Scan;
+pub use sort::{RadixSort, SortBuffers, SortPlan};
