@@ -6,6 +6,7 @@
 pub mod export;
 pub mod gpu;
 pub mod proxy;
+pub mod render;
 pub mod scene;
 mod sink;
 pub mod skin;

@@ -1,4 +1,4 @@
-// Prefix sum, first pass: the sum of each block.
+// Prefix sum, first pass: the sum of each block, in sums[1 + block].
 
 @group(0) @binding(0) var<storage, read> extent: array<u32>;
 @group(0) @binding(1) var<storage, read> values: array<u32>;
@@ -19,5 +19,5 @@ fn main(
         if (i < n) { sum += values[i]; }
     }
     let total = workgroup_exclusive(sum, at).y;
-    if (subgroup == 0u && lane == 0u && block * WORKGROUP * ELEMENTS_A_THREAD < n) { sums[block] = total; }
+    if (subgroup == 0u && lane == 0u && block * WORKGROUP * ELEMENTS_A_THREAD < n) { sums[1u + block] = total; }
 }

@@ -17,7 +17,7 @@ fn reduce(
     let end = min(start + ELEMENTS_A_THREAD, n);
     var sum = 0u;
     for (var i = start; i < end; i++) { sum += values[i]; }
-    sums[block] = sum;
+    sums[1u + block] = sum;
 }
 
 @compute @workgroup_size(1)
@@ -26,11 +26,12 @@ fn spine() {
     let blocks = (n + ELEMENTS_A_THREAD - 1u) / ELEMENTS_A_THREAD;
     var carry = 0u;
     for (var block = 0u; block < blocks; block++) {
-        let sum = sums[block];
-        sums[block] = carry;
+        let sum = sums[1u + block];
+        sums[1u + block] = carry;
         carry += sum;
     }
     prefix[n] = carry;
+    sums[0] = carry;
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -43,7 +44,7 @@ fn sweep(
     let n = extent[0];
     if (start >= n) { return; }
     let end = min(start + ELEMENTS_A_THREAD, n);
-    var carry = sums[block];
+    var carry = sums[1u + block];
     for (var i = start; i < end; i++) {
         let value = values[i];
         prefix[i] = carry;

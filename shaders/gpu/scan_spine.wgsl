@@ -1,4 +1,5 @@
-// Prefix sum, second pass: block sums become block starts, and the grand total follows the prefixes.
+// Prefix sum, second pass: block sums become block starts, the grand total goes to sums[0] and
+// behind the prefixes.
 
 @group(0) @binding(0) var<storage, read> extent: array<u32>;
 @group(0) @binding(1) var<storage, read_write> sums: array<u32>;
@@ -16,10 +17,13 @@ fn main(
     for (var start = 0u; start < blocks; start += WORKGROUP) {
         let block = start + subgroup * lanes + lane;
         var sum = 0u;
-        if (block < blocks) { sum = sums[block]; }
+        if (block < blocks) { sum = sums[1u + block]; }
         let scanned = workgroup_exclusive(sum, at);
-        if (block < blocks) { sums[block] = carry + scanned.x; }
+        if (block < blocks) { sums[1u + block] = carry + scanned.x; }
         carry += scanned.y;
     }
-    if (subgroup == 0u && lane == 0u) { prefix[n] = carry; }
+    if (subgroup == 0u && lane == 0u) {
+        prefix[n] = carry;
+        sums[0] = carry;
+    }
 }

@@ -22,7 +22,7 @@ fn main(
     // The run of this subgroup starts after the runs of the earlier ones: lane 0's exclusive prefix.
     let run_start = subgroupBroadcastFirst(workgroup_exclusive(sum, at).x);
     if (block * WORKGROUP * ELEMENTS_A_THREAD >= n) { return; }
-    var carry = sums[block] + run_start;
+    var carry = sums[1u + block] + run_start;
     for (var round = 0u; round < ELEMENTS_A_THREAD; round++) {
         let i = element(block, at, round);
         var value = 0u;

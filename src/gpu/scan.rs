@@ -33,13 +33,14 @@ impl Scan {
         Scan { tier, blocks, reduce: gpu.kernel(&reduce), spine: gpu.kernel(&spine), sweep: gpu.kernel(&sweep) }
     }
 
-    /// Room for the block sums of up to `capacity` elements.
+    /// Room for the total and the block sums of up to `capacity` elements.
     pub fn sums(&self, gpu: &Gpu, label: &str, capacity: u32) -> Result<wgpu::Buffer, GpuError> {
-        gpu.storage::<u32>(label, self.blocks.count(capacity).max(1) as usize)
+        gpu.storage::<u32>(label, self.blocks.count(capacity) as usize + 1)
     }
 
     /// Writes `prefix[i] = values[0] + .. + values[i - 1]` for i in 0..=n: the total comes last, so
-    /// `prefix` holds one element more than `values`.
+    /// `prefix` holds one element more than `values`. The total is in `sums[0]` too, where an
+    /// [`super::ExtentPass`] finds it without knowing n.
     pub fn record(&self, gpu: &Gpu, recording: &mut Recording, extent: &Extent, values: &wgpu::Buffer, sums: &wgpu::Buffer, prefix: &wgpu::Buffer) {
         let bind = |kernel: &Kernel, split: &[&wgpu::Buffer]| match self.tier {
             Tier::Gpu => gpu.bind(kernel, split),
@@ -98,7 +99,9 @@ mod tests {
         let mut recording = Recording::default();
         scan.record(gpu, &mut recording, &extent, &input, &sums, &prefix);
         gpu.submit(&recording);
-        gpu.read(&prefix, values.len() + 1).unwrap()
+        let prefix = gpu.read(&prefix, values.len() + 1).unwrap();
+        assert_eq!(gpu.read::<u32>(&sums, 1).unwrap()[0], prefix[values.len()]);
+        prefix
     }
 
     #[test]

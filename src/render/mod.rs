@@ -1,0 +1,31 @@
+//! Moving Gaussians and a camera to an image.
+//!
+//! One frame, in order: project (and colour, and the bins touched), scan and compact what is visible,
+//! sort it by depth, count and scan the bins touched in that order, emit pairs of bin and Gaussian,
+//! sort them stably by bin, find each bin's range, blend. No pass appends through an atomic, so equal
+//! depths fall in the Gaussians' own order and the same frame gives the same bits.
+
+mod buffers;
+mod passes;
+mod picture;
+pub mod profile;
+mod renderer;
+mod uniform;
+mod view;
+
+#[cfg(test)]
+mod tests;
+
+pub use passes::kernels;
+pub use picture::{Image, Picture};
+pub use profile::Profile;
+pub use renderer::{GroundLook, RenderOptions, Renderer};
+pub use view::{View, parse_colour};
+
+/// Raised when the picture of the same Gaussians may change.
+pub const VERSION: u32 = 1;
+
+/// The whole text of the room's shaders, for cache keys.
+pub fn shader_text() -> String {
+    kernels().iter().map(crate::gpu::KernelSource::wgsl).collect()
+}

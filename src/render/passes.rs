@@ -1,0 +1,158 @@
+//! The renderer's passes: their text, what they bind, their compiled form.
+
+use super::profile::{CORRELATION_MAX, DEPTH_BITS, EXPONENT_SLACK, FAR, OPACITY_MAX, REACH_SLACK, VARIANCE_MAX};
+use crate::gpu::{Access, Constant, ExtentPass, Gpu, Kernel, KernelSource, RadixSort, Scan, THREADS, Tier};
+use std::sync::OnceLock;
+
+const FRAME: (&str, &str) = ("render/frame.wgsl", include_str!("../../shaders/render/frame.wgsl"));
+const SPLAT: (&str, &str) = ("render/splat.wgsl", include_str!("../../shaders/render/splat.wgsl"));
+const REACH: (&str, &str) = ("render/reach.wgsl", include_str!("../../shaders/render/reach.wgsl"));
+const SH: (&str, &str) = ("render/sh.wgsl", include_str!("../../shaders/render/sh.wgsl"));
+const PROJECT: (&str, &str) = ("render/project.wgsl", include_str!("../../shaders/render/project.wgsl"));
+const COMPACT: (&str, &str) = ("render/compact.wgsl", include_str!("../../shaders/render/compact.wgsl"));
+const GATHER: (&str, &str) = ("render/gather.wgsl", include_str!("../../shaders/render/gather.wgsl"));
+const EMIT: (&str, &str) = ("render/emit.wgsl", include_str!("../../shaders/render/emit.wgsl"));
+const RANGES: (&str, &str) = ("render/ranges.wgsl", include_str!("../../shaders/render/ranges.wgsl"));
+const PIXEL: (&str, &str) = ("render/pixel.wgsl", include_str!("../../shaders/render/pixel.wgsl"));
+const RASTER: (&str, &str) = ("render/raster.wgsl", include_str!("../../shaders/render/raster.wgsl"));
+const RASTER_SERIAL: (&str, &str) = ("render/raster_serial.wgsl", include_str!("../../shaders/render/raster_serial.wgsl"));
+
+/// How one bin is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct RasterForm {
+    /// Which of the two kernels.
+    pub tier: Tier,
+    /// Side of a bin, 16 or 32 pixels.
+    pub bin: u32,
+    /// Whether depths are summed.
+    pub depth: bool,
+    /// Whether the heaviest Gaussian is kept.
+    pub id: bool,
+}
+
+impl RasterForm {
+    /// Threads of a bin: 32 pixels a thread on a CPU, one or two on a GPU.
+    fn workgroup(&self) -> u32 {
+        match self.tier {
+            Tier::Cpu => self.bin * self.bin / 32,
+            Tier::Gpu => self.bin * self.bin / self.pixels_a_thread(),
+        }
+    }
+
+    fn pixels_a_thread(&self) -> u32 {
+        if self.bin == 32 { 2 } else { 1 }
+    }
+
+    fn slot(&self) -> usize {
+        usize::from(self.bin == 32) * 4 + usize::from(self.depth) * 2 + usize::from(self.id)
+    }
+
+    /// The pass of this form.
+    pub fn source(&self) -> KernelSource {
+        let kernel = match self.tier {
+            Tier::Cpu => RASTER_SERIAL,
+            Tier::Gpu => RASTER,
+        };
+        let mut constants = shared_constants();
+        constants.extend([
+            ("WORKGROUP", Constant::U32(self.workgroup())),
+            ("BIN", Constant::U32(self.bin)),
+            ("PIXELS_A_THREAD", Constant::U32(self.pixels_a_thread())),
+            ("BATCH", Constant::U32(if self.bin == 32 { 256 } else { 128 })),
+            ("WITH_DEPTH", Constant::Bool(self.depth)),
+            ("WITH_ID", Constant::Bool(self.id)),
+            ("INFINITY_BITS", Constant::U32(f32::INFINITY.to_bits())),
+        ]);
+        let (u, r, w) = (Access::Uniform, Access::Read, Access::Write);
+        KernelSource {
+            label: "render.raster",
+            entry: "main",
+            parts: vec![FRAME, SPLAT, PIXEL, kernel],
+            constants,
+            bindings: vec![u, r, r, r, r, r, w],
+            immediate_bytes: 0,
+        }
+    }
+}
+
+fn shared_constants() -> Vec<(&'static str, Constant)> {
+    vec![("THREADS", Constant::U32(THREADS)), ("EXPONENT_SLACK", Constant::F32(EXPONENT_SLACK))]
+}
+
+fn source(label: &'static str, parts: &[(&'static str, &'static str)], bindings: &[Access]) -> KernelSource {
+    let mut constants = shared_constants();
+    constants.extend([
+        ("FAR", Constant::F32(FAR)),
+        ("VARIANCE_MAX", Constant::F32(VARIANCE_MAX)),
+        ("CORRELATION_MAX", Constant::F32(CORRELATION_MAX)),
+        ("OPACITY_MAX", Constant::F32(OPACITY_MAX)),
+        ("REACH_SLACK", Constant::F32(REACH_SLACK)),
+        ("LOG2_E", Constant::F32(std::f32::consts::LOG2_E)),
+        ("DEPTH_BITS", Constant::U32(DEPTH_BITS)),
+    ]);
+    KernelSource { label, entry: "main", parts: parts.to_vec(), constants, bindings: bindings.to_vec(), immediate_bytes: 0 }
+}
+
+/// Project, compact, gather, emit, ranges.
+fn sources() -> [KernelSource; 5] {
+    let (u, r, w) = (Access::Uniform, Access::Read, Access::Write);
+    [
+        source("render.project", &[FRAME, SPLAT, REACH, SH, PROJECT], &[u, r, r, w, w, w, w]),
+        source("render.compact", &[FRAME, COMPACT], &[u, r, r, r, r, w, w]),
+        source("render.gather", &[FRAME, GATHER], &[r, r, r, w]),
+        source("render.emit", &[FRAME, SPLAT, REACH, EMIT], &[u, r, r, r, r, r, w, w]),
+        source("render.ranges", &[FRAME, RANGES], &[u, r, r, w]),
+    ]
+}
+
+/// Every pass of the room in every form, for validation and cache keys.
+pub fn kernels() -> Vec<KernelSource> {
+    let mut all = sources().to_vec();
+    for tier in [Tier::Cpu, Tier::Gpu] {
+        for bin in [16, 32] {
+            for (depth, id) in [(false, false), (true, true)] {
+                all.push(RasterForm { tier, bin, depth, id }.source());
+            }
+        }
+    }
+    all
+}
+
+/// The compiled passes; those with several forms are compiled when first needed.
+#[derive(Debug)]
+pub(super) struct Passes {
+    pub tier: Tier,
+    pub scan: Scan,
+    pub sort: RadixSort,
+    pub extent: ExtentPass,
+    pub project: Kernel,
+    pub compact: Kernel,
+    pub gather: Kernel,
+    pub emit: Kernel,
+    pub ranges: Kernel,
+    raster: [OnceLock<Kernel>; 8],
+}
+
+impl Passes {
+    pub fn new(gpu: &Gpu, tier: Tier) -> Passes {
+        let scan = Scan::with_tier(gpu, tier);
+        let [project, compact, gather, emit, ranges] = sources().map(|s| gpu.kernel(&s));
+        Passes {
+            tier,
+            extent: ExtentPass::new(gpu, &scan.blocks),
+            scan,
+            sort: RadixSort::with_tier(gpu, tier),
+            project,
+            compact,
+            gather,
+            emit,
+            ranges,
+            raster: Default::default(),
+        }
+    }
+
+    pub fn raster(&self, gpu: &Gpu, bin: u32, depth: bool, id: bool) -> &Kernel {
+        let form = RasterForm { tier: self.tier, bin, depth, id };
+        self.raster[form.slot()].get_or_init(|| gpu.kernel(&form.source()))
+    }
+}

@@ -1,0 +1,157 @@
+//! Draws Gaussians.
+
+use super::buffers::{Capacity, FrameBuffers};
+use super::passes::Passes;
+use super::picture::Picture;
+use super::uniform::{Planes, Uniform, bin_side};
+use super::{Profile, View};
+use crate::gpu::{Gpu, GpuError, Recording, Tier};
+use crate::skin::Splats;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Pairs of bin and Gaussian that there is room for at first, as a multiple of the Gaussians.
+const PAIRS_A_GAUSSIAN: u32 = 3;
+/// And at least.
+const PAIRS_MIN: u32 = 1 << 16;
+
+/// What is drawn beside colour, and how.
+#[derive(Clone, Debug, Default)]
+pub struct RenderOptions {
+    /// Whose constants.
+    pub profile: Profile,
+    /// Gaussians no further than this are dropped, in the scene's units; 0 takes the default, 0.01.
+    pub near: f32,
+    /// Whether the picture has premultiplied colours in f32, for EXR.
+    pub colour: bool,
+    /// Whether it has depths.
+    pub depth: bool,
+    /// Whether it has object ids.
+    pub id: bool,
+    /// A plain ground under everything, with a contact shadow.
+    pub ground: Option<GroundLook>,
+}
+
+/// A plain ground plane: the background's colour, darker where the shadow falls.
+#[derive(Clone, Debug)]
+pub struct GroundLook {
+    /// World height of the plane.
+    pub height_m: f32,
+}
+
+/// Draws frames on one device. Frames in flight each have buffers of their own, used again once
+/// their picture was read or dropped.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    shared: Arc<Shared>,
+}
+
+/// What the renderer and its pictures on their way back have in common.
+#[derive(Debug)]
+pub(super) struct Shared {
+    pub passes: Passes,
+    /// Side of the bins that suits the device.
+    bin: u32,
+    free: Mutex<Vec<FrameBuffers>>,
+    /// Room for pairs that new buffers get: what the fullest frame so far needed, and some more.
+    pairs: AtomicU32,
+}
+
+impl Renderer {
+    /// The form for this device.
+    pub fn new(gpu: &Gpu) -> Renderer {
+        let limits = gpu.device.limits();
+        let wide = limits.max_compute_invocations_per_workgroup >= 512 && limits.max_compute_workgroup_size_x >= 512;
+        let bin = match gpu.tier {
+            Tier::Gpu if !wide => 16,
+            _ => 32,
+        };
+        Renderer::with_form(gpu, gpu.tier, bin)
+    }
+
+    /// A given form and side of bins, so that tests and benchmarks can run all on one device.
+    pub fn with_form(gpu: &Gpu, tier: Tier, bin: u32) -> Renderer {
+        let shared = Shared { passes: Passes::new(gpu, tier), bin, free: Mutex::default(), pairs: AtomicU32::new(0) };
+        Renderer { gpu: gpu.clone(), shared: Arc::new(shared) }
+    }
+
+    /// Submits one frame and starts its way back. The device goes on with what is submitted next.
+    pub fn draw(&mut self, splats: &Splats, view: &View, options: &RenderOptions) -> Result<Picture, GpuError> {
+        let frame = self.prepare(splats, view, options)?;
+        let mut recording = Recording::default();
+        frame.buffers.record_project(&self.gpu, &self.shared.passes, splats, &mut recording);
+        frame.record_picture(&self.gpu, &self.shared.passes, &mut recording);
+        self.gpu.submit(&recording);
+        Ok(Picture::start(&self.gpu, frame, self.shared.clone()))
+    }
+
+    /// Buffers that are large enough, and what the frame's passes need to know.
+    pub(super) fn prepare(&self, splats: &Splats, view: &View, options: &RenderOptions) -> Result<Frame, GpuError> {
+        let size = [view.width.max(1), view.height.max(1)];
+        let planes = Planes { size, colour: options.colour, depth: options.depth, id: options.id };
+        let bin = bin_side(&options.profile.constants(), self.shared.bin);
+        let mut uniform = Uniform::new(view, options, &planes, bin, splats.count, splats.sh_degree);
+        let need = Capacity {
+            gaussians: splats.count,
+            pairs: self.shared.pairs.load(Ordering::Relaxed).max(splats.count.saturating_mul(PAIRS_A_GAUSSIAN)).max(PAIRS_MIN),
+            bins: uniform.bin_count(),
+            words: planes.starts()[3],
+            backdrop: if options.ground.is_some() { size[0] * size[1] } else { 1 },
+        };
+        let buffers = match self.shared.take(&need) {
+            Some(buffers) => buffers,
+            None => FrameBuffers::new(&self.gpu, &self.shared.passes, need)?,
+        };
+        uniform.capacity = buffers.capacity.pairs;
+        self.gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
+        Ok(Frame { buffers, uniform, planes, object: splats.object.clone() })
+    }
+}
+
+impl Shared {
+    /// Free buffers that a frame fits in; free ones that are too small are given back.
+    fn take(&self, need: &Capacity) -> Option<FrameBuffers> {
+        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        free.retain(|buffers| buffers.capacity.holds(need));
+        free.pop()
+    }
+
+    /// Takes buffers back for a later frame.
+    pub fn put(&self, buffers: FrameBuffers) {
+        self.free.lock().unwrap_or_else(PoisonError::into_inner).push(buffers);
+    }
+
+    /// Notes how many pairs a frame wanted; returns the room that frames should have from now on.
+    pub fn wants_pairs(&self, wanted: u32) -> u32 {
+        let room = wanted.saturating_add(wanted / 2).max(PAIRS_MIN);
+        self.pairs.fetch_max(room, Ordering::Relaxed).max(room)
+    }
+}
+
+/// One frame in flight.
+#[derive(Debug)]
+pub(super) struct Frame {
+    pub buffers: FrameBuffers,
+    pub uniform: Uniform,
+    pub planes: Planes,
+    object: wgpu::Buffer,
+}
+
+impl Frame {
+    /// The passes from the projected Gaussians to the picture.
+    pub fn record_picture(&self, gpu: &Gpu, passes: &Passes, recording: &mut Recording) {
+        self.buffers.record_picture(gpu, passes, &self.uniform, &self.planes, &self.object, recording);
+    }
+
+    /// Draws the frame again with more room for pairs.
+    pub fn redraw(&mut self, gpu: &Gpu, passes: &Passes, pairs: u32) -> Result<(), GpuError> {
+        self.buffers.grow_pairs(gpu, passes, pairs)?;
+        self.uniform.capacity = pairs;
+        gpu.queue.write_buffer(&self.buffers.uniform, 0, bytemuck::bytes_of(&self.uniform));
+        let mut recording = Recording::default();
+        self.record_picture(gpu, passes, &mut recording);
+        gpu.submit(&recording);
+        Ok(())
+    }
+}
