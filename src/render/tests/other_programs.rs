@@ -4,7 +4,7 @@ use super::reference;
 use super::scenes::{cloud, front, psnr, shared, shoot};
 use crate::gpu::Gpu;
 use crate::render::{Profile, Renderer, View};
-use crate::scene::Gaussians;
+use crate::scene::{self, Gaussians};
 use glam::{DQuat, Mat4, Vec3};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -75,21 +75,6 @@ fn brush_cases_to_1e_4_outside_threshold_flips() {
     }
 }
 
-/// Positions, scales, colour, opacity and rotation, 32 bytes a Gaussian.
-fn read_splat(path: &Path) -> Gaussians {
-    let mut g = Gaussians::default();
-    for record in std::fs::read(path).unwrap().chunks_exact(32) {
-        let f: Vec<f32> = bytemuck::pod_collect_to_vec(&record[..24]);
-        g.mean.push(Vec3::from_slice(&f[..3]));
-        g.scale.push(Vec3::from_slice(&f[3..]));
-        g.sh.extend(record[24..27].iter().map(|&c| (f32::from(c) / 255.0 - 0.5) / 0.282_094_8));
-        g.opacity.push(f32::from(record[27]) / 255.0);
-        let q = |i: usize| (f32::from(record[28 + i]) - 128.0) / 128.0;
-        g.rotation.push([q(0), q(1), q(2), q(3)]);
-    }
-    g
-}
-
 #[test]
 fn posed_views_of_real_scenes_at_60_db() {
     let gpu = Gpu::shared_for_tests().unwrap();
@@ -99,9 +84,9 @@ fn posed_views_of_real_scenes_at_60_db() {
         return;
     };
     let scenes: serde_json::Value = serde_json::from_slice(&std::fs::read(cameras).unwrap()).unwrap();
-    for name in ["vase", "bulldozer"] {
+    for name in ["vase", "bulldozer", "hamburger"] {
         let Some(file) = shared(scenes[name]["scene"].as_str().unwrap()) else { continue };
-        let gaussians = read_splat(&file);
+        let gaussians = scene::read(&file).unwrap().gaussians;
         for camera in scenes[name]["cameras"].as_array().unwrap() {
             let view: View = serde_json::from_value(camera.clone()).unwrap();
             let image = shoot(&gpu, &mut renderer, &gaussians, &view);

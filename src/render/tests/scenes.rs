@@ -1,4 +1,4 @@
-//! Small scenes, seeded, and minimal readers for the reference scenes.
+//! Small scenes, seeded, and where the reference material lies.
 
 use crate::gpu::Gpu;
 use crate::render::{Image, RenderOptions, Renderer, View};
