@@ -24,6 +24,14 @@ pub enum ExportError {
         /// What the decoder or the system said.
         reason: String,
     },
+    /// A codec refused, in memory.
+    #[error("cannot encode or decode {what}: {reason}")]
+    Encode {
+        /// Of what.
+        what: &'static str,
+        /// What it said.
+        reason: String,
+    },
     /// A frame came in another size than those before it.
     #[error("{}: a frame of {}x{} pixels cannot follow frames of {}x{}", path.display(), got[0], got[1], expected[0], expected[1])]
     Size {

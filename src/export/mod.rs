@@ -17,7 +17,7 @@ pub use atomic::write_atomic;
 pub use compare::{Comparison, Tolerance, compare};
 pub use error::ExportError;
 pub use exr::write_exr;
-pub use png::{read_png, write_png};
+pub use png::{decode_png, encode_png, read_png, write_png};
 pub use preview::Preview;
 pub use raster::Raster;
 pub use sheet::ContactSheet;

@@ -4,26 +4,38 @@ use super::raster::check;
 use super::{ExportError, Raster, write_atomic};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
-use std::io;
+use std::io::Write;
 use std::path::Path;
 
-/// Writes an opaque picture of four bytes a pixel as PNG with three: fast compression, since frames
-/// are written as they are drawn.
-pub fn write_png(path: &Path, size: [u32; 2], rgba8: &[u8]) -> Result<(), ExportError> {
+/// An opaque picture of four bytes a pixel as a PNG with three: fast compression, since frames are
+/// encoded as they are drawn.
+pub fn encode_png(size: [u32; 2], rgba8: &[u8]) -> Result<Vec<u8>, ExportError> {
     check(size, 4, rgba8.len())?;
     let rgb: Vec<u8> = rgba8.as_chunks::<4>().0.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
-    write_atomic(path, |file| {
-        let encoder = PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive);
-        encoder.write_image(&rgb, size[0], size[1], ExtendedColorType::Rgb8).map_err(io::Error::other)
-    })
+    let mut png = Vec::new();
+    let encoder = PngEncoder::new_with_quality(&mut png, CompressionType::Fast, FilterType::Adaptive);
+    encoder.write_image(&rgb, size[0], size[1], ExtendedColorType::Rgb8).map_err(|e| ExportError::Encode { what: "a PNG", reason: e.to_string() })?;
+    Ok(png)
+}
+
+/// Decodes a PNG of any kind as 8-bit RGBA.
+pub fn decode_png(png: &[u8]) -> Result<Raster, ExportError> {
+    let failed = |e: image::ImageError| ExportError::Encode { what: "a PNG", reason: e.to_string() };
+    let picture = image::load_from_memory_with_format(png, image::ImageFormat::Png).map_err(failed)?.into_rgba8();
+    Ok(Raster { size: [picture.width(), picture.height()], rgba8: picture.into_raw() })
+}
+
+/// Writes an opaque picture of four bytes a pixel.
+pub fn write_png(path: &Path, size: [u32; 2], rgba8: &[u8]) -> Result<(), ExportError> {
+    let png = encode_png(size, rgba8)?;
+    write_atomic(path, |file| file.write_all(&png))
 }
 
 /// Reads a PNG of any kind as 8-bit RGBA.
 pub fn read_png(path: &Path) -> Result<Raster, ExportError> {
     let failed = |reason: String| ExportError::Read { path: path.to_owned(), reason };
     let bytes = std::fs::read(path).map_err(|e| failed(e.to_string()))?;
-    let picture = image::load_from_memory_with_format(&bytes, image::ImageFormat::Png).map_err(|e| failed(e.to_string()))?.into_rgba8();
-    Ok(Raster { size: [picture.width(), picture.height()], rgba8: picture.into_raw() })
+    decode_png(&bytes).map_err(|e| failed(e.to_string()))
 }
 
 #[cfg(test)]
