@@ -10,6 +10,7 @@ pub mod render;
 pub mod scene;
 mod sink;
 pub mod skin;
+pub mod solver;
 pub mod spec;
 pub mod stages;
 pub mod store;

@@ -1,0 +1,34 @@
+// Numbers that passes hand on to each other and to the watch at the end of a segment.
+
+struct Control {
+    // Bits of the largest measure of momentum of any particle, for even and odd substeps.
+    momentum: array<atomic<u32>, 2>,
+    // Bits of the largest speed since the watch was reset.
+    speed: atomic<u32>,
+    // 1 where a fixed-point sum came near its range.
+    overflow: atomic<u32>,
+    // 1 where a particle came near the window's edge.
+    window: atomic<u32>,
+    // Particles that are not finite, at the end of the segment.
+    nonfinite: atomic<u32>,
+    // Smallest and largest determinant of F, order-preserving bits, at the end of the segment.
+    j_low: atomic<u32>,
+    j_high: atomic<u32>,
+    // Objects with a particle that is not finite or inverted, bit object & 31.
+    suspects: atomic<u32>,
+    // Lattice bounds of the stencils' first nodes, at the end of the segment.
+    low_x: atomic<i32>,
+    low_y: atomic<i32>,
+    low_z: atomic<i32>,
+    high_x: atomic<i32>,
+    high_y: atomic<i32>,
+    high_z: atomic<i32>,
+    // Bits of the largest speed at the end of the segment.
+    final_speed: atomic<u32>,
+}
+
+// Power of two that brings momenta up to `largest` to 24 bits, so that 64 of them still fit 31.
+fn momentum_units(largest: f32) -> f32 {
+    let exponent = (bitcast<u32>(max(largest, params.momentum_floor)) >> 23u) + 1u;
+    return bitcast<f32>((254u + 24u - min(exponent, 254u)) << 23u);
+}

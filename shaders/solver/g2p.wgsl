@@ -1,0 +1,81 @@
+// Grid to particles: gathers velocity and its gradient, moves, deforms, and prepares the stress that
+// the next substep hands to the grid.
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read_write> kinematics: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read_write> matter: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read> velocity: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read> colliders: array<Collider>;
+// Acceleration of each object, beside gravity.
+@group(0) @binding(5) var<storage, read> objects: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read_write> control: Control;
+var<immediate> substep: Substep;
+
+@compute @workgroup_size(WORKGROUP)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocation_id) lane: u32) {
+    let n = params.count;
+    let i = min(id.x, n - 1u);
+    let position = kinematics[i];
+    var x = position.xyz;
+    let base = base_node(x);
+    let first = base - params.origin;
+    let offset = x * params.per_m - vec3<f32>(base);
+    var w = spline(offset);
+    let cell = vec3<u32>(clamp(first, vec3<i32>(0), vec3<i32>(params.blocks * 4u) - vec3<i32>(3)));
+    var place = array<vec3<u32>, 3>(axis_offsets(cell), axis_offsets(cell + vec3<u32>(1u)), axis_offsets(cell + vec3<u32>(2u)));
+
+    var v = vec3<f32>(0.0);
+    var gradient = mat3x3<f32>();
+    for (var k = 0u; k < 27u; k++) {
+        let at = vec3<u32>(k % 3u, (k / 3u) % 3u, k / 9u);
+        let weight = w[at.x].x * w[at.y].y * w[at.z].z;
+        let node = velocity[place[at.x].x + place[at.y].y + place[at.z].z].xyz * weight;
+        let d = vec3<f32>(at) - offset;
+        v += node;
+        gradient += mat3x3<f32>(node * d.x, node * d.y, node * d.z);
+    }
+    gradient *= 4.0 * params.per_m;
+    let tag = matter[3u * n + i];
+    let object = bitcast<u32>(tag.y);
+    x += substep.dt_s * v;
+    v += substep.dt_s * objects[object & 0xffffu].xyz;
+
+    // Whatever got behind a surface is put back on it and keeps no inward velocity.
+    let rest_m = min(tag.z, 0.0);
+    for (var c = 0u; c < params.collider_count; c++) {
+        let t = touch(colliders[c], x);
+        if (t.distance_m < rest_m) {
+            let normal = surface_normal(colliders[c], t.face, x);
+            x += normal * (rest_m - t.distance_m);
+            v -= normal * min(dot(v, normal), 0.0);
+        }
+    }
+
+    let old = read_deformation(i);
+    let f = old + substep.dt_s * (gradient * old);
+    let tau = kirchhoff(f, matter[i].w, matter[n + i].w, (object >> 16u) == 1u);
+    let weight = substep.dt_next_s * 4.0 * params.per_m * params.per_m * matter[2u * n + i].w;
+    let affine = position.w * gradient - weight * tau;
+    let momentum = momentum_measure(position.w, v, affine);
+    let speed = length(v);
+    if (id.x < n) {
+        kinematics[i] = vec4<f32>(x, position.w);
+        write_motion(i, v, affine);
+        let rows = transpose(f);
+        matter[i] = vec4<f32>(rows[0], matter[i].w);
+        matter[n + i] = vec4<f32>(rows[1], matter[n + i].w);
+        matter[2u * n + i] = vec4<f32>(rows[2], matter[2u * n + i].w);
+    }
+    // Bits of floats that are not negative are ordered as they are; those of a NaN are above all.
+    let momentum_most = subgroupMax(bitcast<u32>(momentum) & 0x7fffffffu);
+    let speed_most = subgroupMax(bitcast<u32>(speed) & 0x7fffffffu);
+    if (lane == 0u) {
+        let slot = (substep.index + 1u) & 1u;
+        if (momentum_most > atomicLoad(&control.momentum[slot])) {
+            atomicMax(&control.momentum[slot], momentum_most);
+        }
+        if (speed_most > atomicLoad(&control.speed)) {
+            atomicMax(&control.speed, speed_most);
+        }
+    }
+}

@@ -1,0 +1,100 @@
+// Grid: momentum to velocity, gravity, contact, pins. One workgroup for each active block. Leaves the
+// sums and marks that it read zeroed for the next substep.
+
+struct Pin {
+    // As a collider's; w of `at`: 0 half-space, 1 box, 2 sphere.
+    at: vec4<f32>,
+    shape: vec4<f32>,
+    // Box that it is limited to.
+    low: vec4<f32>,
+    high: vec4<f32>,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
+@group(0) @binding(2) var<storage, read> colliders: array<Collider>;
+@group(0) @binding(3) var<storage, read> pins: array<Pin>;
+@group(0) @binding(4) var<storage, read_write> sums: array<vec4<i32>>;
+@group(0) @binding(5) var<storage, read_write> marks: array<vec2<u32>>;
+@group(0) @binding(6) var<storage, read_write> velocity: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> control: Control;
+var<immediate> substep: Substep;
+
+fn pinned(x: vec3<f32>) -> bool {
+    for (var p = 0u; p < params.pin_count; p++) {
+        let pin = pins[p];
+        if (any(x < pin.low.xyz) || any(x > pin.high.xyz)) {
+            continue;
+        }
+        if (touch(Collider(pin.at, pin.shape, vec4<f32>(0.0)), x).distance_m <= 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A node may approach as far as the nearest of its particles has room; then the normal part goes, or
+// comes back by the restitution, and friction takes from the rest what Coulomb grants.
+fn respond(v: vec3<f32>, mark: u32, x: vec3<f32>) -> vec3<f32> {
+    let feature = mark & 1023u;
+    let c = colliders[feature >> 3u];
+    let normal = surface_normal(c, feature & 7u, x);
+    let approach = dot(v, normal);
+    let allowed = -mark_gap_m(mark) / substep.dt_s;
+    if (approach >= allowed) {
+        return v;
+    }
+    // Speeds that weight alone brings within a few substeps do not bounce.
+    let resting = 4.0 * length(params.gravity_m_s2) * substep.dt_s;
+    let bounced = c.surface.y * max(0.0, -approach - resting);
+    let leaving = max(allowed, bounced);
+    let sliding = v - normal * approach;
+    let speed = length(sliding);
+    let grip = c.surface.x * (leaving - approach);
+    let kept = select(0.0, 1.0 - grip / max(speed, 1e-20), speed > grip);
+    return normal * leaving + sliding * kept;
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
+    let place = group.y * GROUPS_ACROSS + group.x;
+    if (place == 0u && lane == 0u) {
+        atomicStore(&control.momentum[(substep.index + 1u) & 1u], 0u);
+    }
+    if (place >= active_blocks[0]) {
+        return;
+    }
+    let block = active_blocks[1u + place];
+    let node = block * 64u + lane;
+    let sum = sums[node];
+    if (sum.w <= 0) {
+        if (any(sum != vec4<i32>(0))) {
+            sums[node] = vec4<i32>(0);
+        }
+        marks[node] = vec2<u32>(0u);
+        velocity[node] = vec4<f32>(0.0);
+        return;
+    }
+    let mark = marks[node];
+    sums[node] = vec4<i32>(0);
+    marks[node] = vec2<u32>(0u);
+    if (any(abs(sum) > vec4<i32>(1 << 30))) {
+        atomicStore(&control.overflow, 1u);
+    }
+    let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
+    var v = vec3<f32>(sum.xyz) * (params.mass_units / momentum_unit) / f32(sum.w) + substep.dt_s * params.gravity_m_s2;
+
+    let in_block = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let across = vec3<u32>(block % params.blocks.x, (block / params.blocks.x) % params.blocks.y, block / (params.blocks.x * params.blocks.y));
+    let x = vec3<f32>(params.origin + vec3<i32>(across * 4u + in_block)) * params.cell_m;
+    if (mark.y != 0u) {
+        v = respond(v, mark.y, x);
+    }
+    if (mark.x != 0u) {
+        v = respond(v, mark.x, x);
+    }
+    if (params.pin_count > 0u && pinned(x)) {
+        v = vec3<f32>(0.0);
+    }
+    velocity[node] = vec4<f32>(v, 0.0);
+}

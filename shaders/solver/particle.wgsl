@@ -1,0 +1,20 @@
+// Particles in planes of vec4, plane p of particle i at [p * count + i].
+//
+// kinematics: (x, mass), (v, A00), (A01 A02 A10 A11), (A12 A20 A21 A22), where
+//     A = mass C - dt (4 / cell^2) volume tau moves momentum to a node at distance d as A d.
+//     Between segments A = mass C alone, so that state does not depend on the next step's length.
+// matter: (F row 0, mu), (F row 1, lambda), (F row 2, volume),
+//     (original index, object and model, rest offset, 0), integers as bits.
+
+fn read_affine(i: u32) -> mat3x3<f32> {
+    let n = params.count;
+    let p = kinematics[n + i].w;
+    let q = kinematics[2u * n + i];
+    let r = kinematics[3u * n + i];
+    return transpose(mat3x3<f32>(vec3<f32>(p, q.xy), vec3<f32>(q.zw, r.x), r.yzw));
+}
+
+fn read_deformation(i: u32) -> mat3x3<f32> {
+    let n = params.count;
+    return transpose(mat3x3<f32>(matter[i].xyz, matter[n + i].xyz, matter[2u * n + i].xyz));
+}

@@ -1,0 +1,25 @@
+// Start of a segment: adds the stress to A, for the length of the segment's first substep, and
+// measures the momenta that its fixed-point scale is made from.
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read_write> kinematics: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> matter: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read_write> control: Control;
+var<immediate> substep: Substep;
+
+@compute @workgroup_size(WORKGROUP)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x >= params.count) {
+        return;
+    }
+    let i = id.x;
+    let n = params.count;
+    let f = read_deformation(i);
+    let neo_hookean = (bitcast<u32>(matter[3u * n + i].y) >> 16u) == 1u;
+    let tau = kirchhoff(f, matter[i].w, matter[n + i].w, neo_hookean);
+    let weight = substep.dt_next_s * 4.0 * params.per_m * params.per_m * matter[2u * n + i].w;
+    let affine = read_affine(i) - weight * tau;
+    let v = kinematics[n + i].xyz;
+    write_motion(i, v, affine);
+    atomicMax(&control.momentum[substep.index & 1u], bitcast<u32>(momentum_measure(kinematics[i].w, v, affine)));
+}

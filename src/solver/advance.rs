@@ -1,0 +1,352 @@
+//! Going on in time: segments of whole substeps, watched, rolled back and run again.
+
+use super::constants::SLACK_CELLS;
+use super::core::Solver;
+use super::grid::GridBuffers;
+use super::obstacles;
+use super::types::{Advance, Softened, SolverError};
+use super::watch::{Control, Watch};
+use crate::Stop;
+use crate::gpu::{Readback, Recording, Tier};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// `Substep` of `shaders/solver/substep.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Substep {
+    dt_s: f32,
+    dt_next_s: f32,
+    index: u32,
+    unused: u32,
+}
+
+/// How a segment is cut into substeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Plan {
+    /// Length of all but perhaps the last.
+    dt_s: f32,
+    /// Length of the last: a cut inside a frame leaves a part.
+    last_dt_s: f32,
+    /// How many.
+    substeps: u32,
+    /// A sort before each so many.
+    sort_every: u32,
+}
+
+impl Plan {
+    fn dt_of(&self, step: u32) -> f32 {
+        match () {
+            _ if step + 1 < self.substeps => self.dt_s,
+            _ if step + 1 == self.substeps => self.last_dt_s,
+            _ => 0.0,
+        }
+    }
+}
+
+/// Two times closer than this are one.
+const SAME_TIME_S: f64 = 1e-9;
+/// Substeps are halved this often before a material is softened.
+const HALVINGS: u32 = 3;
+/// A material is softened this often before the run is given up.
+const SOFTENINGS: u32 = 3;
+/// Sorting is amortised over at most so many substeps; runs of equal cells break up meanwhile.
+const SORT_EVERY: u32 = 4;
+/// Particle-substeps of one submit: about 0.1 s on two CPU cores, so that a stop is heard.
+const CPU_BATCH: u32 = 400_000;
+/// Substeps of one submit on a GPU.
+const GPU_BATCH: u32 = 64;
+
+enum Outcome {
+    Done(Watch),
+    Stopped,
+}
+
+impl Solver {
+    /// Goes on exactly to `to_s`. The state is then at the end of the last substep before it; where it
+    /// was stopped, or fails, at the last frame or cut before that.
+    pub fn advance(&mut self, to_s: f64, stop: &Stop) -> Result<Advance, SolverError> {
+        let mut report = Advance { dt_min_s: f64::INFINITY, ..Default::default() };
+        while self.time_s < to_s - SAME_TIME_S && !report.stopped {
+            self.segment(to_s, stop, &mut report)?;
+        }
+        if report.substeps == 0 {
+            report.dt_min_s = 0.0;
+        }
+        Ok(report)
+    }
+
+    /// One segment: to the end of the frame, to a cut, or to `to_s`, whichever is first.
+    fn segment(&mut self, to_s: f64, stop: &Stop, report: &mut Advance) -> Result<(), SolverError> {
+        let frame_end_s = ((self.time_s / self.settings.frame_s + 1e-6).floor() + 1.0) * self.settings.frame_s;
+        let mut until_s = self.next_cut(to_s.min(frame_end_s));
+        if (until_s - frame_end_s).abs() < SAME_TIME_S {
+            until_s = frame_end_s;
+        }
+        let mut seen = self.look()?;
+        self.backup();
+        let (mut halvings, mut softenings, mut room) = (0, 0, 1);
+        loop {
+            let acceleration_m_s2 = self.set_surroundings();
+            let plan = self.plan(&seen, until_s, frame_end_s, acceleration_m_s2, halvings);
+            let reach_m = (seen.speed_m_s + acceleration_m_s2 * (until_s - self.time_s) as f32) * (until_s - self.time_s) as f32;
+            let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + SLACK_CELLS + 3) * room;
+            self.fit_window(seen.low, seen.high, margin)?;
+            let (start, order) = (self.substep, self.current);
+            let outcome = self.run(&plan, stop)?;
+            let Outcome::Done(now) = outcome else {
+                self.roll_back(start, order);
+                report.stopped = true;
+                return Ok(());
+            };
+            let travel_m = SLACK_CELLS as f32 * self.settings.cell_m;
+            let Some(reason) = now.trip(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m) else {
+                self.time_s = until_s;
+                self.seen = Some(now);
+                report.substeps += u64::from(plan.substeps);
+                report.dt_min_s = report.dt_min_s.min(f64::from(plan.dt_s.min(plan.last_dt_s)));
+                report.dt_max_s = report.dt_max_s.max(f64::from(plan.dt_s.max(plan.last_dt_s)));
+                return Ok(());
+            };
+            tracing::debug!(time_s = self.time_s, dt_s = plan.dt_s, reason, "rolled back");
+            self.roll_back(start, order);
+            report.retries += 1;
+            if now.window {
+                room *= 2;
+            }
+            if halvings < HALVINGS {
+                halvings += 1;
+            } else if softenings < SOFTENINGS {
+                softenings += 1;
+                self.soften(now.suspects, report)?;
+                self.backup();
+                seen = self.look()?;
+            } else {
+                return Err(SolverError::Unstable { time_s: self.time_s, dt_s: f64::from(plan.dt_s), reason });
+            }
+        }
+    }
+
+    /// The next time, up to `until_s`, at which a force or a pin begins or ends.
+    fn next_cut(&self, until_s: f64) -> f64 {
+        let forces = self.settings.forces.iter().flat_map(|f| [f.from_s, f.to_s]);
+        let pins = self.settings.pins.iter().flat_map(|p| [p.from_s, p.to_s]);
+        forces.chain(pins).filter(|&t| t > self.time_s + SAME_TIME_S).fold(until_s, f64::min)
+    }
+
+    fn in_force(&self, from_s: f64, to_s: f64) -> bool {
+        from_s <= self.time_s + SAME_TIME_S && self.time_s + SAME_TIME_S < to_s
+    }
+
+    /// Uploads the forces and pins of the present time. The largest acceleration that anything feels
+    /// beside contact and stress.
+    fn set_surroundings(&mut self) -> f32 {
+        let mut accelerations = vec![Vec3::ZERO; self.object_count as usize];
+        for force in self.settings.forces.iter().filter(|f| self.in_force(f.from_s, f.to_s)) {
+            if let Some(sum) = accelerations.get_mut(force.object as usize) {
+                *sum += force.acceleration_m_s2;
+            }
+        }
+        let pins: Vec<_> = self.settings.pins.iter().filter(|p| self.in_force(p.from_s, p.to_s)).collect();
+        let records: Vec<_> = pins.iter().map(|p| obstacles::pin(p, self.settings.cell_m)).collect();
+        self.params.pin_count = records.len() as u32;
+        self.gpu.upload(&self.pins_buffer, &records);
+        self.gpu.upload(&self.objects_buffer, &accelerations.iter().map(|a| a.extend(0.0)).collect::<Vec<_>>());
+        let driven = accelerations.iter().map(|a| a.length()).fold(0.0, f32::max);
+        self.settings.gravity_m_s2.length() + driven
+    }
+
+    /// Substeps from physics: dt <= C dx / (c + |v|), equal parts of the whole frame, of which a cut
+    /// takes the first ones and a remainder.
+    fn plan(&self, seen: &Watch, until_s: f64, frame_end_s: f64, acceleration_m_s2: f32, halvings: u32) -> Plan {
+        let cell_m = f64::from(self.settings.cell_m);
+        let left_s = frame_end_s - self.time_s;
+        let speed_m_s = f64::from(seen.speed_m_s) + f64::from(acceleration_m_s2) * left_s;
+        let limit_s = f64::from(self.settings.cfl) * cell_m / (f64::from(self.wave_speed_m_s) + speed_m_s) / f64::from(1u32 << halvings);
+        let dt_s = left_s / (left_s / limit_s).ceil().max(1.0);
+        let parts = (until_s - self.time_s) / dt_s;
+        let whole = (parts + 1e-6).floor();
+        let rest_s = (parts - whole) * dt_s;
+        let cut = rest_s > 1e-6 * dt_s;
+        // Half the slack by the present speed; the watch sees to the rest.
+        let sorts = 0.5 * f64::from(SLACK_CELLS) * cell_m / (speed_m_s * dt_s).max(1e-12);
+        Plan {
+            dt_s: dt_s as f32,
+            last_dt_s: if cut { rest_s as f32 } else { dt_s as f32 },
+            substeps: whole as u32 + u32::from(cut),
+            sort_every: (sorts as u32).clamp(1, (SORT_EVERY >> halvings).max(1)),
+        }
+    }
+
+    /// Measures the present state, where that has not been done.
+    pub(super) fn look(&mut self) -> Result<Watch, SolverError> {
+        if let Some(seen) = self.seen {
+            return Ok(seen);
+        }
+        self.gpu.upload(&self.params_buffer, &[self.params]);
+        self.gpu.upload(&self.control, &[Control::FRESH]);
+        let mut recording = Recording::default();
+        self.record_measure(&mut recording);
+        self.gpu.submit(&recording);
+        let seen = self.read_watch()?;
+        self.seen = Some(seen);
+        Ok(seen)
+    }
+
+    fn record_measure(&self, recording: &mut Recording) {
+        let state = &self.buffers[self.current];
+        let bindings = self.gpu.bind(&self.passes.measure, &[&self.params_buffer, &state.kinematics, &state.matter, &self.control]);
+        recording.dispatch(&self.passes.measure, &bindings, self.particle_groups());
+    }
+
+    fn read_watch(&self) -> Result<Watch, SolverError> {
+        let parts = Readback::start(&self.gpu, &[(&self.control, size_of::<Control>() as u64)]).wait(&self.gpu)?;
+        Ok(bytemuck::pod_read_unaligned::<Control>(&parts[0]).watch())
+    }
+
+    /// Runs the substeps of a plan from the present state. The queue is kept full: a batch is recorded
+    /// while the one before it runs.
+    fn run(&mut self, plan: &Plan, stop: &Stop) -> Result<Outcome, SolverError> {
+        let Some(grid) = self.grid.clone() else {
+            return Err(SolverError::Input { what: "no grid".to_owned(), expected: "a window".to_owned() });
+        };
+        self.gpu.upload(&self.params_buffer, &[self.params]);
+        self.gpu.upload(&self.control, &[Control::FRESH]);
+        let bound = [self.bind(&grid, 0), self.bind(&grid, 1)];
+        let batch = match self.gpu.tier {
+            Tier::Cpu => (CPU_BATCH / self.params.count).max(1),
+            Tier::Gpu => GPU_BATCH,
+        };
+        let mut earlier: Option<wgpu::SubmissionIndex> = None;
+        let mut step = 0;
+        while step < plan.substeps {
+            let end = (step + batch).min(plan.substeps);
+            let mut recording = Recording::default();
+            for step in step..end {
+                self.record_substep(plan, step, &grid, &bound, &mut recording);
+            }
+            if end == plan.substeps {
+                self.record_measure(&mut recording);
+            }
+            let submitted = self.gpu.submit(&recording);
+            if let Some(earlier) = earlier.replace(submitted) {
+                let poll = wgpu::PollType::Wait { submission_index: Some(earlier), timeout: None };
+                self.gpu.device.poll(poll).map_err(|e| self.gpu.lost(e))?;
+            }
+            if stop.raised() {
+                return Ok(Outcome::Stopped);
+            }
+            step = end;
+        }
+        Ok(Outcome::Done(self.read_watch()?))
+    }
+
+    fn record_substep(&mut self, plan: &Plan, step: u32, grid: &GridBuffers, bound: &[Bound; 2], recording: &mut Recording) {
+        let groups = self.particle_groups();
+        let sorts = step.is_multiple_of(plan.sort_every);
+        let substep = Substep { dt_s: plan.dt_of(step), dt_next_s: plan.dt_of(step + 1), index: self.substep, unused: 0 };
+        if sorts {
+            self.record_sort(grid, &bound[self.current], recording);
+            self.current = 1 - self.current;
+        }
+        let b = &bound[self.current];
+        let passes = &self.passes;
+        if step == 0 {
+            let first = Substep { dt_next_s: substep.dt_s, ..substep };
+            recording.dispatch_with(&passes.stress, &b.stress, &first, groups);
+        }
+        recording.dispatch_with(&passes.p2g, &b.p2g, &substep, groups);
+        recording.indirect_with(&passes.grid, &b.grid, &substep, &grid.active_groups, 0);
+        recording.dispatch_with(&passes.g2p, &b.g2p, &substep, groups);
+        self.substep += 1;
+    }
+
+    /// Puts the particles in the order of their cells and lists the blocks that they may reach.
+    pub(super) fn record_sort(&self, grid: &GridBuffers, b: &Bound, recording: &mut Recording) {
+        let groups = self.particle_groups();
+        let blocks = self.params.blocks.iter().product::<u32>();
+        let chunks = [blocks.div_ceil(super::constants::SCAN_LANES * super::constants::SCAN_RUN), 1, 1];
+        recording.dispatch(&self.passes.bin, &b.bin, groups);
+        recording.dispatch(&self.passes.scan_sums, &b.scan_sums, chunks);
+        recording.dispatch(&self.passes.scan_blocks, &b.scan_blocks, chunks);
+        recording.indirect(&self.passes.scan_cells, &b.scan_cells, &grid.active_groups, 0);
+        recording.dispatch(&self.passes.scatter, &b.scatter, groups);
+        recording.dispatch(&self.passes.order, &b.order, groups);
+    }
+
+    /// Everything bound, for particles that lie in one of the two state buffers.
+    pub(super) fn bind(&self, grid: &GridBuffers, current: usize) -> Bound {
+        let (gpu, p, params) = (&self.gpu, &self.passes, &self.params_buffer);
+        let (state, other) = (&self.buffers[current], &self.buffers[1 - current]);
+        let (kinematics, matter) = (&state.kinematics, &state.matter);
+        Bound {
+            bin: gpu.bind(&p.bin, &[params, kinematics, &grid.cell_count, &grid.block_info, &self.control]),
+            scan_sums: gpu.bind(&p.scan_sums, &[params, &grid.block_info, &grid.chunk_sums]),
+            scan_blocks: gpu
+                .bind(&p.scan_blocks, &[params, &grid.block_info, &grid.chunk_sums, &grid.block_start, &grid.active_blocks, &grid.active_groups]),
+            scan_cells: gpu.bind(&p.scan_cells, &[params, &grid.active_blocks, &grid.block_start, &grid.cell_count, &grid.cell_start]),
+            scatter: gpu.bind(&p.scatter, &[params, kinematics, matter, &grid.cell_count, &grid.cell_start, &self.slots]),
+            order: gpu.bind(&p.order, &[params, &self.slots, kinematics, matter, &other.kinematics, &other.matter]),
+            stress: gpu.bind(&p.stress, &[params, kinematics, matter, &self.control]),
+            p2g: gpu.bind(&p.p2g, &[params, kinematics, matter, &self.colliders_buffer, &grid.sums, &grid.marks, &self.control]),
+            grid: gpu.bind(
+                &p.grid,
+                &[params, &grid.active_blocks, &self.colliders_buffer, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, &self.control],
+            ),
+            g2p: gpu.bind(&p.g2p, &[params, kinematics, matter, &grid.velocity, &self.colliders_buffer, &self.objects_buffer, &self.control]),
+        }
+    }
+
+    /// Keeps the present state on the device.
+    fn backup(&self) {
+        self.copy_state(&self.buffers[self.current], &self.backup);
+    }
+
+    /// Back to the kept state; whatever the failed segment left on the grid goes.
+    fn roll_back(&mut self, substep: u32, current: usize) {
+        self.substep = substep;
+        self.current = current;
+        self.copy_state(&self.backup, &self.buffers[current]);
+        let mut recording = Recording::default();
+        for buffer in self.grid.iter().flat_map(GridBuffers::dirty) {
+            recording.clear(buffer);
+        }
+        self.gpu.submit(&recording);
+    }
+
+    fn copy_state(&self, from: &super::state::StateBuffers, to: &super::state::StateBuffers) {
+        let bytes = (super::state::PLANES * self.params.count as usize * 16) as u64;
+        let mut recording = Recording::default();
+        recording.copy(&from.kinematics, &to.kinematics, bytes);
+        recording.copy(&from.matter, &to.matter, bytes);
+        self.gpu.submit(&recording);
+    }
+
+    /// Halves the modulus of the suspect objects, or of all where none stands out.
+    fn soften(&mut self, suspects: u32, report: &mut Advance) -> Result<(), SolverError> {
+        let softer = |object: u32| suspects == 0 || suspects >> (object & 31) & 1 != 0;
+        self.edit(|s| {
+            if softer(s.object()) {
+                s.mu_pa *= 0.5;
+                s.lambda_pa *= 0.5;
+            }
+        })?;
+        let time_s = self.time_s;
+        report.softened.extend((0..self.object_count).filter(|&o| softer(o)).map(|object| Softened { object, factor: 0.5, time_s }));
+        Ok(())
+    }
+}
+
+/// The bind groups of the passes over one of the two state buffers.
+pub(super) struct Bound {
+    bin: wgpu::BindGroup,
+    scan_sums: wgpu::BindGroup,
+    scan_blocks: wgpu::BindGroup,
+    scan_cells: wgpu::BindGroup,
+    scatter: wgpu::BindGroup,
+    order: wgpu::BindGroup,
+    stress: wgpu::BindGroup,
+    p2g: wgpu::BindGroup,
+    grid: wgpu::BindGroup,
+    g2p: wgpu::BindGroup,
+}

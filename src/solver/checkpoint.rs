@@ -1,0 +1,54 @@
+//! A solver's state as bytes, from which another goes on to the same bits.
+
+use super::core::Solver;
+use super::state::ParticleState;
+use super::types::SolverError;
+use bytemuck::{Pod, Zeroable};
+
+/// First bytes of every checkpoint.
+const MAGIC: [u8; 4] = *b"PTSC";
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Header {
+    magic: [u8; 4],
+    version: u32,
+    count: u32,
+    substep: u32,
+    time_s: f64,
+}
+
+impl Solver {
+    /// The whole state between two segments. Particles are in their original order: the order in which
+    /// they are summed follows from where they are, and is found again by the next sort.
+    pub fn checkpoint(&self) -> Result<Vec<u8>, SolverError> {
+        let count = self.params.count;
+        let header = Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s };
+        let mut bytes = bytemuck::bytes_of(&header).to_vec();
+        bytes.extend_from_slice(bytemuck::cast_slice(&self.states()?));
+        let unstressed: Vec<[f32; 12]> = self.gpu.read(&self.unstressed, count as usize)?;
+        bytes.extend_from_slice(bytemuck::cast_slice(&unstressed));
+        Ok(bytes)
+    }
+
+    /// Goes back, or forward, to a checkpoint of a solver with the same settings and particles.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SolverError> {
+        let refuse = |what: String| SolverError::Checkpoint { what };
+        let count = self.params.count as usize;
+        let (head, states, tail) = (size_of::<Header>(), count * size_of::<ParticleState>(), count * size_of::<[f32; 12]>());
+        if bytes.len() != head + states + tail {
+            return Err(refuse(format!("{} bytes where {count} particles take {}", bytes.len(), head + states + tail)));
+        }
+        let header: Header = bytemuck::pod_read_unaligned(&bytes[..head]);
+        if header.magic != MAGIC || header.version != super::VERSION || header.count as usize != count {
+            return Err(refuse(format!("version {} for {} particles", header.version, header.count)));
+        }
+        let particles: Vec<ParticleState> = bytemuck::pod_collect_to_vec(&bytes[head..head + states]);
+        let unstressed: Vec<[f32; 12]> = bytemuck::pod_collect_to_vec(&bytes[head + states..]);
+        self.replace(&particles);
+        self.gpu.upload(&self.unstressed, &unstressed);
+        self.substep = header.substep;
+        self.time_s = header.time_s;
+        Ok(())
+    }
+}

@@ -1,0 +1,58 @@
+//! The solver's numbers, in one place; WGSL gets them from here.
+
+use crate::gpu::Constant;
+
+/// Threads a workgroup of the passes over particles. A multiple of every subgroup size.
+pub const WORKGROUP: u32 = 128;
+/// Threads a workgroup of the scans; one for each cell of a block.
+pub const SCAN_LANES: u32 = 64;
+/// Blocks that each thread of a scan sums alone.
+pub const SCAN_RUN: u32 = 16;
+/// Workgroups along x of a pass over active blocks; more go along y.
+pub const GROUPS_ACROSS: u32 = 32_768;
+/// Newton steps of the polar decomposition.
+pub const POLAR_STEPS: u32 = 5;
+/// det F below which the polar decomposition takes the form that survives inversion.
+pub const FLAT: f32 = 0.1;
+/// Turns of that form.
+pub const FLAT_STEPS: u32 = 16;
+/// Neo-Hookean ln J goes no lower than ln of this.
+pub const J_FLOOR: f32 = 0.05;
+/// A particle below or above these det F makes its object suspect when a segment fails.
+pub const J_LEAST: f32 = 0.05;
+/// See [`J_LEAST`].
+pub const J_MOST: f32 = 20.0;
+/// Steps of the gap in a contact mark.
+pub const GAP_STEPS: f32 = 2_097_152.0;
+/// Contact is marked from this far off, in cells: a particle moves less in a substep.
+pub const REACH_CELLS: f32 = 0.75;
+/// Rest offsets of sampled particles end here, in cells: standing on its support, a particle is
+/// about that far from it.
+pub const REST_CELLS: f32 = 0.25;
+/// Captured things that stand up to this far above their support count as touching it, in cells.
+pub const REST_CELLS_MAX: f32 = 1.0;
+/// A contribution or sum in fixed point beyond this trips the watch.
+pub const SUM_LIMIT: f32 = 536_870_912.0;
+/// Bits of the mass of the heaviest particle in fixed point.
+pub const MASS_BITS: i32 = 23;
+/// Cells that a particle may travel between two sorts.
+pub const SLACK_CELLS: i32 = 1;
+
+/// All of them as WGSL constants.
+pub fn all() -> Vec<(&'static str, Constant)> {
+    vec![
+        ("WORKGROUP", Constant::U32(WORKGROUP)),
+        ("SCAN_LANES", Constant::U32(SCAN_LANES)),
+        ("SCAN_RUN", Constant::U32(SCAN_RUN)),
+        ("GROUPS_ACROSS", Constant::U32(GROUPS_ACROSS)),
+        ("POLAR_STEPS", Constant::U32(POLAR_STEPS)),
+        ("FLAT", Constant::F32(FLAT)),
+        ("FLAT_STEPS", Constant::U32(FLAT_STEPS)),
+        ("J_FLOOR", Constant::F32(J_FLOOR)),
+        ("J_LEAST", Constant::F32(J_LEAST)),
+        ("J_MOST", Constant::F32(J_MOST)),
+        ("GAP_STEPS", Constant::F32(GAP_STEPS)),
+        ("REST_CELLS_MAX", Constant::F32(REST_CELLS_MAX)),
+        ("SUM_LIMIT", Constant::F32(SUM_LIMIT)),
+    ]
+}

@@ -1,0 +1,280 @@
+//! The solver itself: its particles, its surroundings, and what may be done to them between frames.
+
+use super::constants::{MASS_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
+use super::grid::{GridBuffers, Window, allowed_blocks};
+use super::obstacles::{self, PinRecord};
+use super::passes::Passes;
+use super::state::{self, ParticleState, StateBuffers};
+use super::types::{Particles, Placement, Settings, SolverError};
+use super::watch::{Control, Watch};
+use crate::gpu::{Gpu, Recording};
+use bytemuck::{Pod, Zeroable};
+use glam::{IVec3, Mat3, Vec3};
+
+/// `Params` of `shaders/solver/common.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(super) struct Params {
+    pub origin: [i32; 3],
+    pub count: u32,
+    pub blocks: [u32; 3],
+    pub collider_count: u32,
+    pub gravity_m_s2: [f32; 3],
+    pub cell_m: f32,
+    pub per_m: f32,
+    pub mass_units: f32,
+    pub reach_m: f32,
+    pub has_ground: u32,
+    pub pin_count: u32,
+    pub slack: i32,
+    pub seed: u32,
+    pub momentum_floor: f32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Kick {
+    add_m_s: [f32; 3],
+    keep: f32,
+    object: u32,
+    padding: [u32; 3],
+}
+
+/// An elastic world of particles on one device. MLS-MPM (Hu et al. 2018) with quadratic splines and
+/// APIC transfers (Jiang et al. 2015), on a sparse part of an endless lattice.
+#[derive(Debug)]
+pub struct Solver {
+    pub(super) gpu: Gpu,
+    pub(super) settings: Settings,
+    pub(super) passes: Passes,
+    pub(super) params: Params,
+    pub(super) params_buffer: wgpu::Buffer,
+    pub(super) colliders_buffer: wgpu::Buffer,
+    pub(super) pins_buffer: wgpu::Buffer,
+    pub(super) objects_buffer: wgpu::Buffer,
+    pub(super) object_count: u32,
+    pub(super) control: wgpu::Buffer,
+    /// The order of the particles is that of `buffers[current]`; a sort writes the other one.
+    pub(super) buffers: [StateBuffers; 2],
+    pub(super) current: usize,
+    pub(super) backup: StateBuffers,
+    pub(super) slots: wgpu::Buffer,
+    /// Rows of F0^-1 in the original order.
+    pub(super) unstressed: wgpu::Buffer,
+    motion: wgpu::Buffer,
+    velocity: wgpu::Buffer,
+    pub(super) grid: Option<GridBuffers>,
+    pub(super) window: Option<Window>,
+    /// What the watch saw at the present time; none where something changed since.
+    pub(super) seen: Option<Watch>,
+    pub(super) wave_speed_m_s: f32,
+    pub(super) time_s: f64,
+    pub(super) substep: u32,
+}
+
+impl Solver {
+    /// Uploads the particles; the first window of the grid is made when time first moves.
+    pub fn new(gpu: &Gpu, settings: Settings, particles: &Particles) -> Result<Solver, SolverError> {
+        check(&settings)?;
+        let colliders = obstacles::colliders(&settings);
+        let states = state::initial(particles, &colliders, settings.cell_m)?;
+        let n = states.len();
+        let heaviest_kg = states.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
+        let params = Params {
+            count: n as u32,
+            collider_count: colliders.len() as u32,
+            gravity_m_s2: settings.gravity_m_s2.into(),
+            cell_m: settings.cell_m,
+            per_m: 1.0 / settings.cell_m,
+            mass_units: 2f32.powi(MASS_BITS - heaviest_kg.log2().ceil() as i32),
+            reach_m: REACH_CELLS * settings.cell_m,
+            has_ground: u32::from(settings.ground.is_some()),
+            slack: SLACK_CELLS,
+            seed: (settings.seed ^ settings.seed >> 32) as u32,
+            // Scales are made for at least a millimetre a second.
+            momentum_floor: heaviest_kg * 1e-3,
+            ..Default::default()
+        };
+        let object_count = states.iter().map(ParticleState::object).max().unwrap_or(0) + 1;
+        let identity = Mat3::IDENTITY.to_cols_array_2d().map(|row| [row[0], row[1], row[2], 0.0]);
+        let solver = Solver {
+            passes: Passes::new(gpu),
+            params_buffer: gpu.uniform("solver.params", &params),
+            colliders_buffer: gpu.storage_from("solver.colliders", &padded(&colliders, 1))?,
+            pins_buffer: gpu.storage::<PinRecord>("solver.pins", settings.pins.len().max(1))?,
+            objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,
+            object_count,
+            control: gpu.storage::<Control>("solver.control", 1)?,
+            buffers: [StateBuffers::new(gpu, "solver.even", n)?, StateBuffers::new(gpu, "solver.odd", n)?],
+            current: 0,
+            backup: StateBuffers::new(gpu, "solver.backup", n)?,
+            slots: gpu.storage::<[u32; 4]>("solver.slots", n)?,
+            unstressed: gpu.storage_from("solver.unstressed", &vec![identity; n])?,
+            motion: gpu.storage::<[u32; 8]>("solver.motion", n)?,
+            velocity: gpu.storage::<[f32; 4]>("solver.frame_velocity", n)?,
+            grid: None,
+            window: None,
+            seen: None,
+            wave_speed_m_s: fastest_wave(&states),
+            time_s: 0.0,
+            substep: 0,
+            gpu: gpu.clone(),
+            settings,
+            params,
+        };
+        solver.buffers[0].upload(gpu, &states);
+        Ok(solver)
+    }
+
+    /// Seconds since the start.
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// Particles of all objects.
+    pub fn particle_count(&self) -> u32 {
+        self.params.count
+    }
+
+    /// 8 u32 a particle in the original order: x, y, z as f32 bits; then nine f16 of G - I by rows,
+    /// where G = F F0^-1; the last half is 0. Written by [`Solver::record_frame`].
+    pub fn motion(&self) -> &wgpu::Buffer {
+        &self.motion
+    }
+
+    /// vec4 a particle in the original order: velocity in m/s, det G. Written by [`Solver::record_frame`].
+    pub fn velocity(&self) -> &wgpu::Buffer {
+        &self.velocity
+    }
+
+    /// Adds the pass that writes [`Solver::motion`] and [`Solver::velocity`] for the present time.
+    pub fn record_frame(&self, recording: &mut Recording) {
+        let state = &self.buffers[self.current];
+        let buffers = [&self.params_buffer, &state.kinematics, &state.matter, &self.unstressed, &self.motion, &self.velocity];
+        recording.dispatch(&self.passes.frame, &self.gpu.bind(&self.passes.frame, &buffers), self.particle_groups());
+    }
+
+    /// Moves an object rigidly to where it starts and sets its velocity: F becomes R F.
+    pub fn place(&mut self, object: u32, placement: &Placement) -> Result<(), SolverError> {
+        let turn = Mat3::from_quat(placement.rotation.normalize());
+        let centre = placement.centre_m + placement.offset_m;
+        let spin = placement.spin_rad_s;
+        // [spin] x, so that v = velocity + spin x (x - centre) has this gradient.
+        let cross = Mat3::from_cols(Vec3::new(0.0, spin.z, -spin.y), Vec3::new(-spin.z, 0.0, spin.x), Vec3::new(spin.y, -spin.x, 0.0));
+        let still = placement.rotation.is_near_identity() && placement.offset_m == Vec3::ZERO;
+        self.edit(|s| {
+            if s.object() != object {
+                return;
+            }
+            if !still {
+                s.position_m = turn * (s.position_m - placement.centre_m) + centre;
+                s.set_f(turn * s.f());
+            }
+            s.velocity_m_s = placement.velocity_m_s + spin.cross(s.position_m - centre);
+            s.set_affine(cross * s.mass_kg);
+        })
+    }
+
+    /// Adds to the velocity of all of an object.
+    pub fn kick(&mut self, object: u32, delta_v_m_s: Vec3) {
+        self.change_velocity(object, delta_v_m_s, 1.0);
+    }
+
+    /// Replaces the velocity of all of an object; it neither spins nor stretches then.
+    pub fn set_velocity(&mut self, object: u32, velocity_m_s: Vec3) {
+        self.change_velocity(object, velocity_m_s, 0.0);
+    }
+
+    fn change_velocity(&mut self, object: u32, add: Vec3, keep: f32) {
+        self.gpu.upload(&self.params_buffer, &[self.params]);
+        let state = &self.buffers[self.current];
+        let bindings = self.gpu.bind(&self.passes.kick, &[&self.params_buffer, &state.kinematics, &state.matter]);
+        let mut recording = Recording::default();
+        let kick = Kick { add_m_s: add.into(), keep, object, padding: [0; 3] };
+        recording.dispatch_with(&self.passes.kick, &bindings, &kick, self.particle_groups());
+        self.gpu.submit(&recording);
+        self.seen = None;
+    }
+
+    /// All particles in their original order.
+    pub(super) fn states(&self) -> Result<Vec<ParticleState>, SolverError> {
+        Ok(self.buffers[self.current].download(&self.gpu, self.params.count as usize)?)
+    }
+
+    /// Changes particles on the host; they are back in their original order then, which the next
+    /// segment's sort makes good.
+    pub(super) fn edit(&mut self, change: impl FnMut(&mut ParticleState)) -> Result<(), SolverError> {
+        let mut states = self.states()?;
+        states.iter_mut().for_each(change);
+        self.replace(&states);
+        Ok(())
+    }
+
+    pub(super) fn replace(&mut self, states: &[ParticleState]) {
+        self.wave_speed_m_s = fastest_wave(states);
+        self.buffers[self.current].upload(&self.gpu, states);
+        self.seen = None;
+    }
+
+    pub(super) fn particle_groups(&self) -> [u32; 3] {
+        [self.params.count.div_ceil(WORKGROUP), 1, 1]
+    }
+
+    /// Makes the window hold stencils from `low` to `high` with room around them.
+    pub(super) fn fit_window(&mut self, low: IVec3, high: IVec3, margin: i32) -> Result<(), SolverError> {
+        if self.window.is_some_and(|w| w.holds(low, high, margin)) {
+            return Ok(());
+        }
+        // Some more room than is needed now, so that a window lasts many frames; where that does not
+        // fit, what is needed.
+        let allowed = allowed_blocks(&self.gpu);
+        let roomy = Window::around(low, high, 2 * margin + 4);
+        let window = if roomy.block_count() <= allowed { roomy } else { Window::around(low, high, margin) };
+        let blocks = window.block_count();
+        if blocks > allowed {
+            let extent_m = (window.blocks * 4).as_vec3() * self.settings.cell_m;
+            let cell_m = self.settings.cell_m;
+            return Err(SolverError::TooWide { extent_m: extent_m.into(), cell_m, nodes: blocks * 64, allowed: allowed * 64 });
+        }
+        if self.grid.as_ref().is_none_or(|g| g.capacity < blocks) {
+            // The old grid goes first, so that both need not fit.
+            self.grid = None;
+            self.grid = Some(GridBuffers::new(&self.gpu, (blocks + blocks / 4).min(allowed))?);
+        }
+        self.params.origin = window.origin.into();
+        self.params.blocks = window.blocks.into();
+        self.window = Some(window);
+        Ok(())
+    }
+}
+
+fn fastest_wave(states: &[ParticleState]) -> f32 {
+    states.iter().map(ParticleState::wave_speed_m_s).fold(0.0, f32::max)
+}
+
+/// A list that can always be bound.
+fn padded<T: Pod>(values: &[T], least: usize) -> Vec<T> {
+    let mut values = values.to_vec();
+    values.resize(values.len().max(least), T::zeroed());
+    values
+}
+
+fn check(settings: &Settings) -> Result<(), SolverError> {
+    let refuse = |what: String, expected: &str| Err(SolverError::Input { what, expected: expected.to_owned() });
+    if !(settings.cell_m > 0.0 && settings.cell_m.is_finite()) {
+        return refuse(format!("a cell of {} m", settings.cell_m), "a positive, finite size");
+    }
+    if !settings.gravity_m_s2.is_finite() {
+        return refuse(format!("gravity {}", settings.gravity_m_s2), "finite numbers");
+    }
+    if settings.colliders.len() > 126 {
+        return refuse(format!("{} colliders", settings.colliders.len()), "at most 126");
+    }
+    if !(settings.cfl > 0.0 && settings.cfl <= 0.6) {
+        return refuse(format!("a CFL number of {}", settings.cfl), "over 0, at most 0.6");
+    }
+    if !(settings.frame_s > 0.0) {
+        return refuse(format!("frames of {} s", settings.frame_s), "a positive length");
+    }
+    Ok(())
+}

@@ -1,0 +1,99 @@
+//! The window of the lattice that is stored, and the buffers over it.
+
+use super::constants::{SCAN_LANES, SCAN_RUN};
+use super::types::SolverError;
+use crate::gpu::{Gpu, Tier};
+use glam::{IVec3, UVec3};
+
+/// A box of 4^3 blocks of an endless lattice whose nodes stand at integer multiples of the cell size.
+/// Where it lies decides only what is stored: no sum depends on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Window {
+    /// First node, each coordinate a multiple of 4.
+    pub origin: IVec3,
+    /// Blocks along each axis.
+    pub blocks: UVec3,
+}
+
+impl Window {
+    /// The smallest window that holds the stencils that begin at nodes `low` to `high`, and `margin`
+    /// nodes around them.
+    pub fn around(low: IVec3, high: IVec3, margin: i32) -> Window {
+        let first = low - IVec3::splat(margin + 1);
+        let last = high + IVec3::splat(margin + 4);
+        let origin = IVec3::new(first.x.div_euclid(4), first.y.div_euclid(4), first.z.div_euclid(4)) * 4;
+        let blocks = ((last - origin + IVec3::splat(3)) / 4).as_uvec3();
+        Window { origin, blocks }
+    }
+
+    /// Whether everything that `around` would hold is inside.
+    pub fn holds(&self, low: IVec3, high: IVec3, margin: i32) -> bool {
+        let first = low - self.origin - IVec3::splat(margin + 1);
+        let last = high - self.origin + IVec3::splat(margin + 4);
+        first.cmpge(IVec3::ZERO).all() && last.cmple((self.blocks * 4).as_ivec3()).all()
+    }
+
+    pub fn block_count(&self) -> u64 {
+        u64::from(self.blocks.x) * u64::from(self.blocks.y) * u64::from(self.blocks.z)
+    }
+}
+
+/// Buffers over the window's nodes and blocks. All but `velocity` hold zeros between segments.
+#[derive(Clone, Debug)]
+pub(super) struct GridBuffers {
+    /// Blocks that there is room for.
+    pub capacity: u64,
+    pub sums: wgpu::Buffer,
+    pub marks: wgpu::Buffer,
+    pub velocity: wgpu::Buffer,
+    pub cell_count: wgpu::Buffer,
+    pub cell_start: wgpu::Buffer,
+    pub block_info: wgpu::Buffer,
+    pub block_start: wgpu::Buffer,
+    pub chunk_sums: wgpu::Buffer,
+    pub active_blocks: wgpu::Buffer,
+    pub active_groups: wgpu::Buffer,
+}
+
+/// Bytes of all buffers for one node.
+const NODE_BYTES: u64 = 48;
+/// A software adapter shares the machine's memory and is slow over much of it.
+const CPU_GRID_BYTES: u64 = 768 << 20;
+/// Room for other programs and for the picture is left on a GPU.
+const GPU_GRID_BYTES: u64 = 6 << 30;
+
+/// Blocks that the device holds.
+pub(super) fn allowed_blocks(gpu: &Gpu) -> u64 {
+    let limits = gpu.device.limits();
+    let widest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let bytes = match gpu.tier {
+        Tier::Cpu => CPU_GRID_BYTES,
+        Tier::Gpu => GPU_GRID_BYTES,
+    };
+    (widest / 16).min(bytes / NODE_BYTES) / 64
+}
+
+impl GridBuffers {
+    pub fn new(gpu: &Gpu, blocks: u64) -> Result<GridBuffers, SolverError> {
+        let nodes = blocks as usize * 64;
+        let chunks = blocks.div_ceil(u64::from(SCAN_LANES * SCAN_RUN)) as usize;
+        Ok(GridBuffers {
+            capacity: blocks,
+            sums: gpu.storage::<[i32; 4]>("solver.sums", nodes)?,
+            marks: gpu.storage::<[u32; 2]>("solver.marks", nodes)?,
+            velocity: gpu.storage::<[f32; 4]>("solver.velocity", nodes)?,
+            cell_count: gpu.storage::<u32>("solver.cell_count", nodes)?,
+            cell_start: gpu.storage::<u32>("solver.cell_start", nodes)?,
+            block_info: gpu.storage::<[u32; 2]>("solver.block_info", blocks as usize)?,
+            block_start: gpu.storage::<u32>("solver.block_start", blocks as usize)?,
+            chunk_sums: gpu.storage::<[u32; 2]>("solver.chunk_sums", chunks)?,
+            active_blocks: gpu.storage::<u32>("solver.active_blocks", blocks as usize + 1)?,
+            active_groups: gpu.storage::<u32>("solver.active_groups", 4)?,
+        })
+    }
+
+    /// What a segment that went wrong may have left behind.
+    pub fn dirty(&self) -> [&wgpu::Buffer; 4] {
+        [&self.sums, &self.marks, &self.cell_count, &self.block_info]
+    }
+}

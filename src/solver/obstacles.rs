@@ -1,0 +1,102 @@
+//! Static colliders and pins as the kernels read them, and the same geometry on the CPU.
+
+use super::types::{PinRegion, Settings};
+use crate::spec::ColliderShape;
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
+
+/// A collider on the device; see `shaders/solver/contact.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct ColliderRecord {
+    pub at: [f32; 4],
+    pub shape: [f32; 4],
+    pub surface: [f32; 4],
+}
+
+/// A pin on the device; see `shaders/solver/grid.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct PinRecord {
+    pub at: [f32; 4],
+    pub shape: [f32; 4],
+    pub low: [f32; 4],
+    pub high: [f32; 4],
+}
+
+/// Where a point is against a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Touch {
+    pub distance_m: f32,
+    pub face: u32,
+}
+
+/// All colliders, the ground first where there is one.
+pub(super) fn colliders(settings: &Settings) -> Vec<ColliderRecord> {
+    let ground = settings.ground.map(|g| ColliderRecord {
+        at: [0.0, 0.0, g.height_m, 0.0],
+        shape: [0.0, 0.0, 1.0, 0.0],
+        surface: [g.friction, g.restitution, 0.0, 0.0],
+    });
+    let others = settings.colliders.iter().map(|c| {
+        let (at, shape) = geometry(&c.shape, 0.0);
+        ColliderRecord { at, shape, surface: [c.friction, c.restitution, 0.0, 0.0] }
+    });
+    ground.into_iter().chain(others).collect()
+}
+
+/// A pin that is thinner than a cell is thickened to one, so that it holds at least one layer of
+/// nodes; around the object's box there is room for the nodes that its outermost particles reach.
+pub(super) fn pin(region: &PinRegion, cell_m: f32) -> PinRecord {
+    let thinnest_m = match &region.shape {
+        ColliderShape::Box(b) => b.size_m.iter().copied().fold(f64::INFINITY, f64::min) as f32,
+        ColliderShape::Sphere(s) => 2.0 * s.radius_m as f32,
+        ColliderShape::Plane(_) => cell_m,
+    };
+    let (at, shape) = geometry(&region.shape, (0.5 * (cell_m - thinnest_m)).max(0.0));
+    let room = Vec3::splat(2.0 * cell_m);
+    PinRecord { at, shape, low: (region.low_m - room).extend(0.0).into(), high: (region.high_m + room).extend(0.0).into() }
+}
+
+fn geometry(shape: &ColliderShape, grow_m: f32) -> ([f32; 4], [f32; 4]) {
+    let point = |p: &[f64; 3]| DVec3::from(*p).as_vec3();
+    match shape {
+        ColliderShape::Plane(p) => {
+            let normal = DVec3::from(p.normal).normalize_or(DVec3::Z).as_vec3();
+            (point(&p.point_m).extend(0.0).into(), normal.extend(0.0).into())
+        }
+        ColliderShape::Box(b) => {
+            let half = point(&b.size_m) * 0.5 + Vec3::splat(grow_m);
+            (point(&b.centre_m).extend(1.0).into(), half.extend(0.0).into())
+        }
+        ColliderShape::Sphere(s) => (point(&s.centre_m).extend(2.0).into(), [0.0, 0.0, 0.0, s.radius_m as f32 + grow_m]),
+    }
+}
+
+impl ColliderRecord {
+    /// Signed distance to the surface and the face that is nearest.
+    pub fn touch(&self, x: Vec3) -> Touch {
+        let d = x - Vec3::from_slice(&self.at);
+        let shape = Vec3::from_slice(&self.shape);
+        match self.at[3] as u32 {
+            0 => Touch { distance_m: d.dot(shape), face: 0 },
+            2 => Touch { distance_m: d.length() - self.shape[3], face: 0 },
+            _ => {
+                let q = d.abs() - shape;
+                let axis = if q.x > q.y && q.x > q.z {
+                    0
+                } else if q.y > q.z {
+                    1
+                } else {
+                    2
+                };
+                Touch { distance_m: q[axis], face: axis as u32 + if d[axis] < 0.0 { 4 } else { 0 } }
+            }
+        }
+    }
+}
+
+/// Distance to the nearest surface, infinite where there is none.
+pub(super) fn distance_m(colliders: &[ColliderRecord], x: Vec3) -> f32 {
+    colliders.iter().map(|c| c.touch(x).distance_m).fold(f32::INFINITY, f32::min)
+}

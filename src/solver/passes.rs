@@ -1,0 +1,105 @@
+//! The solver's kernels, and their compiled set.
+
+use super::constants;
+use crate::gpu::{Access, Gpu, Kernel, KernelSource};
+use Access::{Read, Uniform, Write};
+
+macro_rules! shader {
+    ($name:literal) => {
+        (concat!("solver/", $name, ".wgsl"), include_str!(concat!("../../shaders/solver/", $name, ".wgsl")))
+    };
+}
+
+/// Bytes of the immediates of a pass of the substep.
+const SUBSTEP: u32 = 16;
+/// Bytes of the immediates of a kick.
+const KICK: u32 = 32;
+
+fn source(label: &'static str, parts: Vec<(&'static str, &'static str)>, bindings: &[Access], immediate_bytes: u32) -> KernelSource {
+    let mut all = vec![shader!("common")];
+    all.extend(parts);
+    KernelSource { label, entry: "main", parts: all, constants: constants::all(), bindings: bindings.to_vec(), immediate_bytes }
+}
+
+/// Every pass of the solver, for validation and keys.
+pub fn kernels() -> Vec<KernelSource> {
+    sources().into()
+}
+
+/// In the order of [`Passes`].
+fn sources() -> [KernelSource; 13] {
+    [
+        source("solver.bin", vec![shader!("control"), shader!("cell"), shader!("bin")], &[Uniform, Read, Write, Write, Write], 0),
+        source("solver.scan_sums", vec![shader!("scan"), shader!("scan_sums")], &[Uniform, Read, Write], 0),
+        source("solver.scan_blocks", vec![shader!("scan"), shader!("scan_blocks")], &[Uniform, Write, Read, Write, Write, Write], 0),
+        source("solver.scan_cells", vec![shader!("scan"), shader!("scan_cells")], &[Uniform, Read, Read, Read, Write], 0),
+        source("solver.scatter", vec![shader!("cell"), shader!("scatter")], &[Uniform, Read, Read, Write, Read, Write], 0),
+        source("solver.order", vec![shader!("order")], &[Uniform, Read, Read, Read, Write, Write], 0),
+        source(
+            "solver.stress",
+            vec![shader!("control"), shader!("substep"), shader!("material"), shader!("particle"), shader!("particle_write"), shader!("stress")],
+            &[Uniform, Write, Read, Write],
+            SUBSTEP,
+        ),
+        source(
+            "solver.p2g",
+            vec![shader!("control"), shader!("substep"), shader!("particle"), shader!("contact"), shader!("p2g")],
+            &[Uniform, Read, Read, Read, Write, Write, Write],
+            SUBSTEP,
+        ),
+        source(
+            "solver.grid",
+            vec![shader!("control"), shader!("substep"), shader!("contact"), shader!("grid")],
+            &[Uniform, Read, Read, Read, Write, Write, Write, Write],
+            SUBSTEP,
+        ),
+        source(
+            "solver.g2p",
+            vec![
+                shader!("control"),
+                shader!("substep"),
+                shader!("material"),
+                shader!("particle"),
+                shader!("particle_write"),
+                shader!("contact"),
+                shader!("g2p"),
+            ],
+            &[Uniform, Write, Write, Read, Read, Read, Write],
+            SUBSTEP,
+        ),
+        source("solver.measure", vec![shader!("control"), shader!("particle"), shader!("measure")], &[Uniform, Read, Read, Write], 0),
+        source("solver.kick", vec![shader!("particle"), shader!("particle_write"), shader!("kick")], &[Uniform, Write, Read], KICK),
+        source("solver.frame", vec![shader!("particle"), shader!("frame")], &[Uniform, Read, Read, Read, Write, Write], 0),
+    ]
+}
+
+/// Shader text of all passes, for the keys of stages.
+pub fn shader_text() -> String {
+    kernels().iter().map(KernelSource::wgsl).collect()
+}
+
+/// The compiled passes.
+#[derive(Clone, Debug)]
+pub(super) struct Passes {
+    pub bin: Kernel,
+    pub scan_sums: Kernel,
+    pub scan_blocks: Kernel,
+    pub scan_cells: Kernel,
+    pub scatter: Kernel,
+    pub order: Kernel,
+    pub stress: Kernel,
+    pub p2g: Kernel,
+    pub grid: Kernel,
+    pub g2p: Kernel,
+    pub measure: Kernel,
+    pub kick: Kernel,
+    pub frame: Kernel,
+}
+
+impl Passes {
+    pub fn new(gpu: &Gpu) -> Passes {
+        let [bin, scan_sums, scan_blocks, scan_cells, scatter, order, stress, p2g, grid, g2p, measure, kick, frame] =
+            sources().map(|source| gpu.kernel(&source));
+        Passes { bin, scan_sums, scan_blocks, scan_cells, scatter, order, stress, p2g, grid, g2p, measure, kick, frame }
+    }
+}

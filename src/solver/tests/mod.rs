@@ -1,0 +1,70 @@
+//! Tests of the whole solver on a device, and of each kernel against its twin.
+
+mod motion;
+
+use super::{Particles, Settings, Solver};
+use crate::gpu::Gpu;
+use crate::spec::ElasticModel;
+use glam::Vec3;
+
+/// A box of regularly spaced particles of density 1000.
+pub(super) fn block(low_m: Vec3, size_m: Vec3, spacing_m: f32, young_pa: f32, poisson: f32) -> Particles {
+    let counts = (size_m / spacing_m).round().as_uvec3();
+    let mut position_m = Vec::new();
+    for z in 0..counts.z {
+        for y in 0..counts.y {
+            for x in 0..counts.x {
+                position_m.push(low_m + (Vec3::new(x as f32, y as f32, z as f32) + 0.5) * spacing_m);
+            }
+        }
+    }
+    let n = position_m.len();
+    Particles {
+        position_m,
+        velocity_m_s: vec![Vec3::ZERO; n],
+        volume_m3: vec![spacing_m.powi(3); n],
+        density_kg_m3: vec![1000.0; n],
+        young_pa: vec![young_pa; n],
+        poisson: vec![poisson; n],
+        model: vec![ElasticModel::Corotated; n],
+        object: vec![0; n],
+    }
+}
+
+pub(super) fn solver(settings: Settings, particles: &Particles) -> Solver {
+    let gpu = Gpu::shared_for_tests().expect("a device");
+    Solver::new(&gpu, settings, particles).expect("a solver")
+}
+
+pub(super) fn centre_m(solver: &Solver) -> Vec3 {
+    let states = solver.states().expect("states");
+    let mass: f32 = states.iter().map(|s| s.mass_kg).sum();
+    states.iter().map(|s| s.position_m * s.mass_kg).sum::<Vec3>() / mass
+}
+
+#[test]
+fn shaders_are_valid_and_bind_what_they_declare() {
+    for source in super::kernels() {
+        let module = naga::front::wgsl::parse_str(&source.wgsl()).unwrap_or_else(|e| panic!("{}: {e}", source.label));
+        let bound = module.global_variables.iter().filter(|(_, v)| v.binding.is_some()).count();
+        assert_eq!(bound, source.bindings.len(), "{}", source.label);
+    }
+}
+
+#[test]
+fn host_structs_have_the_layout_of_the_shaders() {
+    let size = |label: &str, name: &str| {
+        let source = super::kernels().into_iter().find(|k| k.label == label).expect("a kernel");
+        let module = naga::front::wgsl::parse_str(&source.wgsl()).expect("valid WGSL");
+        let (handle, _) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).expect("a struct");
+        let mut layouter = naga::proc::Layouter::default();
+        layouter.update(module.to_ctx()).expect("a layout");
+        layouter[handle].size as usize
+    };
+    assert_eq!(size("solver.bin", "Params"), size_of::<super::core::Params>());
+    assert_eq!(size("solver.bin", "Control"), size_of::<super::watch::Control>());
+    assert_eq!(size("solver.grid", "Collider"), size_of::<super::obstacles::ColliderRecord>());
+    assert_eq!(size("solver.grid", "Pin"), size_of::<super::obstacles::PinRecord>());
+    assert_eq!(size("solver.p2g", "Substep"), 16);
+    assert_eq!(size("solver.kick", "Kick"), 32);
+}

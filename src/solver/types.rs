@@ -1,0 +1,241 @@
+//! What the solver is given and what it answers.
+
+use crate::gpu::GpuError;
+use crate::spec::{ColliderShape, ElasticModel};
+use glam::{Quat, Vec3};
+
+/// The particles of all objects, as sampled: the captured pose, free of stress. World frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Particles {
+    /// Metres.
+    pub position_m: Vec<Vec3>,
+    /// Metres a second.
+    pub velocity_m_s: Vec<Vec3>,
+    /// Volume that each stands for when free of stress.
+    pub volume_m3: Vec<f32>,
+    /// Mass over that volume.
+    pub density_kg_m3: Vec<f32>,
+    /// Young's modulus E.
+    pub young_pa: Vec<f32>,
+    /// Poisson's ratio, above -1 and below 0.5.
+    pub poisson: Vec<f32>,
+    /// Which energy.
+    pub model: Vec<ElasticModel>,
+    /// Index of the object that each belongs to, from 0.
+    pub object: Vec<u32>,
+}
+
+impl Particles {
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.position_m.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.position_m.is_empty()
+    }
+
+    /// Lamé's two moduli (mu, lambda) of one particle, in pascals.
+    pub fn lame_pa(&self, index: usize) -> (f32, f32) {
+        let (e, nu) = (self.young_pa[index], self.poisson[index]);
+        (e / (2.0 * (1.0 + nu)), e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)))
+    }
+}
+
+/// A horizontal plane that nothing passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Height.
+    pub height_m: f32,
+    /// Coulomb coefficient.
+    pub friction: f32,
+    /// Share of the approaching speed that is given back, 0 to 1.
+    pub restitution: f32,
+}
+
+/// A static solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Collider {
+    /// Where it is solid, world metres.
+    pub shape: ColliderShape,
+    /// Coulomb coefficient.
+    pub friction: f32,
+    /// Share of the approaching speed that is given back, 0 to 1.
+    pub restitution: f32,
+}
+
+/// Holds still whatever lies in a shape, within the box of the object that it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PinRegion {
+    /// Inside a box or sphere, behind a plane.
+    pub shape: ColliderShape,
+    /// Lowest corner of the object's captured bounds.
+    pub low_m: Vec3,
+    /// Highest corner of them.
+    pub high_m: Vec3,
+    /// From when, seconds.
+    pub from_s: f64,
+    /// Until when; infinite for a pin that lasts.
+    pub to_s: f64,
+}
+
+/// A constant acceleration of one object over a span of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObjectForce {
+    /// Index of the object.
+    pub object: u32,
+    /// From when, seconds.
+    pub from_s: f64,
+    /// Until when; infinite for one that lasts.
+    pub to_s: f64,
+    /// World frame.
+    pub acceleration_m_s2: Vec3,
+}
+
+/// What surrounds the particles, and how finely they are solved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Edge of a grid cell.
+    pub cell_m: f32,
+    /// Acceleration of free fall.
+    pub gravity_m_s2: Vec3,
+    /// The ground, where there is one.
+    pub ground: Option<Plane>,
+    /// Static solids beside it.
+    pub colliders: Vec<Collider>,
+    /// What is held.
+    pub pins: Vec<PinRegion>,
+    /// What is driven.
+    pub forces: Vec<ObjectForce>,
+    /// Length of a frame. Substeps are equal parts of it, so that an event inside a frame changes
+    /// nothing before itself.
+    pub frame_s: f64,
+    /// Of the dither.
+    pub seed: u64,
+    /// Share of the acoustic limit that a substep takes: dt <= cfl cell / (c + |v|).
+    pub cfl: f32,
+}
+
+impl Settings {
+    /// Nothing around, earth's gravity, 50 frames a second.
+    pub fn new(cell_m: f32) -> Settings {
+        Settings {
+            cell_m,
+            gravity_m_s2: Vec3::new(0.0, 0.0, -9.81),
+            ground: None,
+            colliders: Vec::new(),
+            pins: Vec::new(),
+            forces: Vec::new(),
+            frame_s: 0.02,
+            seed: 1,
+            cfl: 0.4,
+        }
+    }
+}
+
+/// Where an object starts: x' = rotation (x - centre) + centre + offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// About `centre_m`.
+    pub rotation: Quat,
+    /// Of mass, in the captured pose.
+    pub centre_m: Vec3,
+    /// After the rotation.
+    pub offset_m: Vec3,
+    /// Of the centre.
+    pub velocity_m_s: Vec3,
+    /// About the moved centre, world frame.
+    pub spin_rad_s: Vec3,
+}
+
+/// An object that could only be kept stable with a smaller modulus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Softened {
+    /// Index of the object.
+    pub object: u32,
+    /// Its Young's modulus was multiplied by this.
+    pub factor: f32,
+    /// When.
+    pub time_s: f64,
+}
+
+/// How an advance went.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Advance {
+    /// Whether it was stopped; time then stands at the last boundary that was reached whole.
+    pub stopped: bool,
+    /// Substeps kept.
+    pub substeps: u64,
+    /// Shortest of them, seconds; 0 where there were none.
+    pub dt_min_s: f64,
+    /// Longest of them.
+    pub dt_max_s: f64,
+    /// Segments that were rolled back and run again.
+    pub retries: u32,
+    /// Objects that were softened.
+    pub softened: Vec<Softened>,
+}
+
+/// How far the search for the captured pose's prestress came.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrestressReport {
+    /// Whether the residual fell below the aim.
+    pub converged: bool,
+    /// Force left over as a share of weight, both root mean square over the grid's mass.
+    pub residual: f32,
+    /// Rounds of relaxation.
+    pub iterations: u32,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Why a solver could not be made or go on.
+#[derive(Debug, thiserror::Error)]
+pub enum SolverError {
+    /// The device.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// An argument that no caller within the schema gives.
+    #[error("the solver was given {what}: expected {expected}")]
+    Input {
+        /// What is wrong.
+        what: String,
+        /// What would be right.
+        expected: String,
+    },
+    /// The grid would not fit.
+    #[error(
+        "the objects spread over {extent_m:.1?} m, and cells of {cell_m} m would need {nodes} grid nodes, of which the device holds {allowed}; \
+         use a smaller solver.cells_across, a shorter time.duration_s or slower pushes"
+    )]
+    TooWide {
+        /// Extent of all particles and the room around them.
+        extent_m: [f32; 3],
+        /// Cell size.
+        cell_m: f32,
+        /// Nodes needed.
+        nodes: u64,
+        /// Nodes allowed.
+        allowed: u64,
+    },
+    /// Neither smaller substeps nor a softer material helped.
+    #[error(
+        "the simulation could not be kept stable after {time_s:.3} s: {reason}; tried substeps down to {dt_s:.2e} s and a softer material; \
+         lower the speeds, or raise material.young_pa"
+    )]
+    Unstable {
+        /// The last stable time.
+        time_s: f64,
+        /// The smallest substep tried.
+        dt_s: f64,
+        /// What the watch saw.
+        reason: String,
+    },
+    /// Bytes that are no checkpoint of this solver.
+    #[error("a checkpoint does not fit: {what}; delete it, and the run starts anew")]
+    Checkpoint {
+        /// In which way.
+        what: String,
+    },
+}
