@@ -14,7 +14,8 @@ impl Spec {
     pub fn write(&self, file: &Path) -> Result<(), Error> {
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let text = self.relative_to(folder)?.to_toml();
-        crate::store::write_atomic(file, text.as_bytes()).map_err(|error| SpecError::new(SpecErrorKind::File, "", error.to_string()))
+        crate::store::write_atomic(file, text.as_bytes())
+            .map_err(|error| SpecError::new(SpecErrorKind::File, "", format!("{} cannot be written: {error}", file.display())))
     }
 
     /// The same spec with its scene's path as it reads from `folder`.

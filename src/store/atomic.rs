@@ -9,20 +9,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub(super) const TEMP: &str = ".tmp-";
 
 /// Writes a file under another name in the same folder, brings it to disk, and then renames it.
-/// Makes the folder where it is not there. The error says which file and what failed.
+/// Makes the folder where it is not there. The error is the system's and does not name the file.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let attempt = || {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        fs::create_dir_all(folder)?;
-        let temp = temp_in(folder);
-        let written = write_synced(&temp, bytes).and_then(|()| fs::rename(&temp, path)).and_then(|()| sync_folder(folder));
-        if written.is_err() {
-            // The temporary may never have come to be; what matters is the first error.
-            let _ = fs::remove_file(&temp);
-        }
-        written
-    };
-    attempt().map_err(|error| io::Error::new(error.kind(), format!("{} cannot be written: {error}", path.display())))
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)?;
+    let temp = temp_in(folder);
+    let written = write_synced(&temp, bytes).and_then(|()| fs::rename(&temp, path)).and_then(|()| sync_folder(folder));
+    if written.is_err() {
+        // The temporary may never have come to be; what matters is the first error.
+        let _ = fs::remove_file(&temp);
+    }
+    written
 }
 
 fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {

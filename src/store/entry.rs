@@ -1,0 +1,170 @@
+//! A finished entry: named blobs with their sizes and checksums, and what the stage said of them.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File, FileTimes};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::StoreError;
+
+/// Lists an entry's blobs; written last.
+pub(super) const MANIFEST: &str = "entry.json";
+/// Locked while an entry is in use; its time is that of the last use.
+pub(super) const USED: &str = "used";
+
+/// Size and checksum of a blob.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Blob {
+    pub(super) bytes: u64,
+    pub(super) blake3: String,
+}
+
+/// What `entry.json` holds.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Manifest {
+    pub(super) meta: Value,
+    pub(super) blobs: BTreeMap<String, Blob>,
+}
+
+/// What a stage kept under a key. While it lives it is in use and not evicted.
+#[derive(Debug)]
+pub struct Entry {
+    path: PathBuf,
+    manifest: Manifest,
+    // Holds the shared lock.
+    _used: File,
+}
+
+impl Entry {
+    /// Opens a finished entry, none where there is none; sizes are compared, contents are not.
+    pub(super) fn open_at(path: &Path) -> Result<Option<Entry>, StoreError> {
+        let Some(used) = use_entry(path)? else { return Ok(None) };
+        let manifest_path = path.join(MANIFEST);
+        let bytes = match fs::read(&manifest_path) {
+            Ok(bytes) => bytes,
+            // Evicted between the two looks.
+            Err(error) if error.kind() == io::ErrorKind::NotFound && !path.exists() => return Ok(None),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(StoreError::damaged(&manifest_path, "it is missing")),
+            Err(error) => return Err(StoreError::io("read", &manifest_path)(error)),
+        };
+        let manifest: Manifest =
+            serde_json::from_value(super::parse(&manifest_path, &bytes)?).map_err(|error| StoreError::damaged(&manifest_path, error))?;
+        for (name, blob) in &manifest.blobs {
+            let file = path.join(super::checked(name).map_err(|error| StoreError::damaged(&manifest_path, error))?);
+            match fs::metadata(&file) {
+                Ok(found) if found.len() == blob.bytes => {}
+                Ok(found) => return Err(StoreError::damaged(&file, format!("{} bytes instead of {}", found.len(), blob.bytes))),
+                Err(error) => return Err(StoreError::damaged(&file, error)),
+            }
+        }
+        Ok(Some(Entry { path: path.to_owned(), manifest, _used: used }))
+    }
+
+    /// What the stage said of it.
+    pub fn meta(&self) -> &Value {
+        &self.manifest.meta
+    }
+
+    /// The names of its blobs, in order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.manifest.blobs.keys().map(String::as_str)
+    }
+
+    /// Whether it has a blob of that name.
+    pub fn has(&self, name: &str) -> bool {
+        self.manifest.blobs.contains_key(name)
+    }
+
+    /// The size of a blob, zero where there is none.
+    pub fn bytes(&self, name: &str) -> u64 {
+        self.manifest.blobs.get(name).map_or(0, |blob| blob.bytes)
+    }
+
+    /// Opens a blob. Read from start to end, its checksum is compared at the end; after a seek no more.
+    pub fn open(&self, name: &str) -> Result<BlobReader, StoreError> {
+        let (path, blob) = self.blob(name)?;
+        let file = File::open(&path).map_err(StoreError::io("read", &path))?;
+        let state = Checking { hasher: Box::default(), left: blob.bytes, expected: blob.blake3.clone() };
+        Ok(BlobReader { file: BufReader::with_capacity(1 << 16, file), path, checking: Some(state) })
+    }
+
+    /// Reads a whole blob and compares its checksum.
+    pub fn read(&self, name: &str) -> Result<Vec<u8>, StoreError> {
+        let (path, blob) = self.blob(name)?;
+        let bytes = fs::read(&path).map_err(StoreError::io("read", &path))?;
+        if blake3::hash(&bytes).to_hex().as_str() == blob.blake3 { Ok(bytes) } else { Err(StoreError::damaged(&path, "its checksum differs")) }
+    }
+
+    /// Where a blob lies, for programs that need a file. Not to be written.
+    pub fn path(&self, name: &str) -> Result<PathBuf, StoreError> {
+        self.blob(name).map(|(path, _)| path)
+    }
+
+    pub(super) fn blob(&self, name: &str) -> Result<(PathBuf, &Blob), StoreError> {
+        match self.manifest.blobs.get(name) {
+            Some(blob) => Ok((self.path.join(name), blob)),
+            None => Err(StoreError::damaged(&self.path.join(name), "the entry has no such blob")),
+        }
+    }
+}
+
+/// Takes the shared lock of an entry and notes the use; none where there is no entry.
+fn use_entry(path: &Path) -> Result<Option<File>, StoreError> {
+    let used_path = path.join(USED);
+    let used = match File::options().read(true).write(true).open(&used_path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == io::ErrorKind::NotFound && !path.exists() => return Ok(None),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(StoreError::damaged(&used_path, "it is missing")),
+        Err(error) => return Err(StoreError::io("opened", &used_path)(error)),
+    };
+    match used.try_lock_shared() {
+        Ok(()) => {}
+        // On its way out.
+        Err(fs::TryLockError::WouldBlock) => return Ok(None),
+        Err(fs::TryLockError::Error(error)) => return Err(StoreError::io("locked", &used_path)(error)),
+    }
+    used.set_times(FileTimes::new().set_modified(SystemTime::now())).map_err(StoreError::io("touched", &used_path))?;
+    Ok(Some(used))
+}
+
+/// Reads a blob.
+#[derive(Debug)]
+pub struct BlobReader {
+    file: BufReader<File>,
+    path: PathBuf,
+    checking: Option<Checking>,
+}
+
+#[derive(Debug)]
+struct Checking {
+    hasher: Box<blake3::Hasher>,
+    left: u64,
+    expected: String,
+}
+
+impl Read for BlobReader {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        if let Some(checking) = &mut self.checking {
+            checking.hasher.update(&buffer[..count]);
+            checking.left = checking.left.saturating_sub(count as u64);
+            let ended = checking.left == 0 || (count == 0 && !buffer.is_empty());
+            if ended && checking.hasher.finalize().to_hex().as_str() != checking.expected {
+                let damage = StoreError::damaged(&self.path, "its checksum differs");
+                return Err(io::Error::new(io::ErrorKind::InvalidData, damage));
+            }
+        }
+        Ok(count)
+    }
+}
+
+impl Seek for BlobReader {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.checking = None;
+        self.file.seek(to)
+    }
+}

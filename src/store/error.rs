@@ -1,0 +1,69 @@
+//! What goes wrong with a store, and what to do about it.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A fault of the store.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// Made by a later version of the program.
+    #[error("the store {} has format {found}, this program knows {known}: use a newer phystalk, or another folder with --store", dir.display())]
+    Newer {
+        /// The store.
+        dir: PathBuf,
+        /// Its format.
+        found: u32,
+        /// The newest known one.
+        known: u32,
+    },
+    /// A folder of something else.
+    #[error("{} is not a store and not empty: name another folder with --store", dir.display())]
+    NotAStore {
+        /// The folder.
+        dir: PathBuf,
+    },
+    /// Bytes that are not what was written.
+    #[error("{} is damaged ({why})", path.display())]
+    Damaged {
+        /// The file or folder.
+        path: PathBuf,
+        /// What gave it away.
+        why: String,
+    },
+    /// Another process holds the lock.
+    #[error("the store {} is still locked by another process after {waited_s} s: wait for it to end, or use another folder with --store", dir.display())]
+    Locked {
+        /// The store.
+        dir: PathBuf,
+        /// How long it was waited for.
+        waited_s: f64,
+    },
+    /// A name that could lead out of the store.
+    #[error("`{name}` is not a name in a store: a-z, 0-9, _, - and . inside")]
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// The system refused.
+    #[error("{} cannot be {doing}: {source}", path.display())]
+    Io {
+        /// "read", "written", "locked", …
+        doing: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+impl StoreError {
+    /// For `map_err`: what was being done to which path.
+    pub(super) fn io(doing: &'static str, path: &Path) -> impl FnOnce(io::Error) -> StoreError {
+        move |source| StoreError::Io { doing, path: path.to_owned(), source }
+    }
+
+    /// Bytes that are not what was written.
+    pub(super) fn damaged(path: &Path, why: impl ToString) -> StoreError {
+        StoreError::Damaged { path: path.to_owned(), why: why.to_string() }
+    }
+}

@@ -1,0 +1,239 @@
+//! The store as stages and history use it, and as crashes and other processes leave it.
+
+use std::fs::{self, File};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::Path;
+use std::time::Duration;
+
+use serde_json::json;
+
+use super::*;
+
+fn store() -> (tempfile::TempDir, Store) {
+    let home = tempfile::tempdir().unwrap();
+    let store = Store::open(None, home.path()).unwrap();
+    (home, store)
+}
+
+fn put(store: &Store, key: &str, bytes: &[u8]) -> Entry {
+    let writer = store.begin("simulate", key).unwrap();
+    writer.put("motion", bytes).unwrap();
+    writer.finish(json!({ "key": key })).unwrap()
+}
+
+fn leftovers(store: &Store) -> usize {
+    fs::read_dir(store.dir().join("tmp")).map_or(0, Iterator::count)
+}
+
+#[test]
+fn an_entry_appears_whole_with_its_blobs() {
+    let (_home, store) = store();
+    let writer = store.begin("simulate", "k1").unwrap();
+    let (mut motion, mut checkpoint) = (writer.write("motion").unwrap(), writer.write("t0.5").unwrap());
+    for part in 0..100_u8 {
+        motion.write_all(&[part; 1000]).unwrap();
+        checkpoint.write_all(&[part]).unwrap();
+    }
+    motion.finish().unwrap();
+    checkpoint.finish().unwrap();
+    drop(writer.write("given_up").unwrap());
+    assert!(store.get("simulate", "k1").unwrap().is_none());
+    assert!(!store.contains("simulate", "k1"));
+    writer.finish(json!({ "frames": 101 })).unwrap();
+
+    assert!(store.contains("simulate", "k1"));
+    let entry = store.get("simulate", "k1").unwrap().unwrap();
+    assert_eq!(entry.meta(), &json!({ "frames": 101 }));
+    assert_eq!(entry.names().collect::<Vec<_>>(), ["motion", "t0.5"]);
+    assert_eq!((entry.bytes("motion"), entry.has("given_up")), (100_000, false));
+    assert_eq!(entry.read("t0.5").unwrap(), (0..100).collect::<Vec<u8>>());
+    let mut all = Vec::new();
+    entry.open("motion").unwrap().read_to_end(&mut all).unwrap();
+    assert_eq!((all.len(), all[99_999]), (100_000, 99));
+    let mut reader = entry.open("motion").unwrap();
+    reader.seek(SeekFrom::Start(50_000)).unwrap();
+    let mut one = [0];
+    reader.read_exact(&mut one).unwrap();
+    assert_eq!(one, [50]);
+    assert!(store.get("simulate", "k2").unwrap().is_none());
+    assert!(entry.read("none").is_err());
+    assert_eq!(leftovers(&store), 0);
+}
+
+#[test]
+fn an_unfinished_entry_vanishes() {
+    let (_home, store) = store();
+    let writer = store.begin("proxy", "k").unwrap();
+    writer.put("solid", b"half").unwrap();
+    assert_eq!(leftovers(&store), 1);
+    drop(writer);
+    assert_eq!(leftovers(&store), 0);
+    assert!(store.get("proxy", "k").unwrap().is_none());
+}
+
+#[test]
+fn a_second_finish_replaces_and_a_reader_reads_on() {
+    let (_home, store) = store();
+    let partial = put(&store, "k", b"partial");
+    let writer = store.begin("simulate", "k").unwrap();
+    writer.adopt(&partial, "motion", "start").unwrap();
+    writer.put("motion", b"whole").unwrap();
+    let mut reader = partial.open("motion").unwrap();
+    let entry = writer.finish(json!(null)).unwrap();
+    let mut text = String::new();
+    reader.read_to_string(&mut text).unwrap();
+    assert_eq!(text, "partial");
+    assert_eq!((entry.read("start").unwrap(), entry.read("motion").unwrap()), (b"partial".to_vec(), b"whole".to_vec()));
+}
+
+#[test]
+fn damage_is_said_once_and_then_missed() {
+    let (_home, store) = store();
+    let path = put(&store, "short", b"0123456789").path("motion").unwrap();
+    File::options().write(true).open(&path).unwrap().set_len(3).unwrap();
+    let error = store.get("simulate", "short").unwrap_err();
+    assert!(matches!(error, StoreError::Damaged { .. }), "{error}");
+    assert!(error.to_string().contains("3 bytes instead of 10"), "{error}");
+    assert!(store.get("simulate", "short").unwrap().is_none());
+
+    let entry = put(&store, "flipped", b"0123456789");
+    fs::write(entry.path("motion").unwrap(), b"0123456780").unwrap();
+    assert!(matches!(entry.read("motion"), Err(StoreError::Damaged { .. })));
+    let fault = entry.open("motion").unwrap().read_to_end(&mut Vec::new()).unwrap_err();
+    assert!(fault.to_string().contains("checksum"), "{fault}");
+
+    for file in [entry::MANIFEST, entry::USED] {
+        let entry = put(&store, "holed", b"x");
+        fs::remove_file(entry.path("motion").unwrap().with_file_name(file)).unwrap();
+        drop(entry);
+        assert!(matches!(store.get("simulate", "holed"), Err(StoreError::Damaged { .. })), "{file}");
+        assert!(store.get("simulate", "holed").unwrap().is_none());
+    }
+}
+
+#[test]
+fn eviction_takes_the_longest_unused_and_spares_pins_and_readers() {
+    let (_home, store) = store();
+    for key in ["pinned", "read", "old", "touched"] {
+        drop(put(&store, key, &[0; 10_000]));
+    }
+    store.pin("head", [("simulate", "pinned")]).unwrap();
+    let reading = store.get("simulate", "read").unwrap().unwrap();
+    drop(store.get("simulate", "touched").unwrap());
+    let store = store.with_cap(42_000);
+    drop(put(&store, "new", &[0; 10_000]));
+    let there = |key| store.contains("simulate", key);
+    assert!(!there("old"));
+    assert!(["pinned", "read", "touched", "new"].into_iter().all(there));
+    drop(reading);
+    store.pin("head", []).unwrap();
+    drop(put(&store.clone().with_cap(11_000), "last", &[0; 10_000]));
+    assert_eq!(store.usage().unwrap().entries, 1);
+    assert!(there("last"));
+    assert_eq!(leftovers(&store), 0);
+}
+
+#[test]
+fn what_dead_processes_left_is_swept_and_the_living_are_spared() {
+    let (home, store) = store();
+    let living = store.begin("scene", "k").unwrap();
+    living.put("blob", b"x").unwrap();
+    let tmp = store.dir().join("tmp");
+    fs::create_dir_all(tmp.join("1-1")).unwrap();
+    fs::write(tmp.join("1-1/used"), b"").unwrap();
+    fs::write(tmp.join("1-1/blob"), b"half").unwrap();
+    fs::create_dir_all(tmp.join("1-2/gone")).unwrap();
+    fs::write(store.dir().join(".tmp-1-3"), b"half").unwrap();
+    let again = Store::open(None, home.path()).unwrap();
+    assert_eq!(leftovers(&again), 1);
+    assert!(!store.dir().join(".tmp-1-3").exists());
+    living.finish(json!(null)).unwrap();
+    assert!(again.contains("scene", "k"));
+}
+
+#[test]
+fn the_nearest_store_above_is_found() {
+    let (home, store) = store();
+    let deep = home.path().join("a/b");
+    fs::create_dir_all(&deep).unwrap();
+    assert_eq!(Store::open(None, &deep).unwrap().dir(), store.dir());
+    let own = Store::open(Some(Path::new("mine")), &deep).unwrap();
+    assert_eq!(own.dir(), deep.join("mine"));
+    assert!(own.cap_bytes() <= CAP_BYTES);
+    assert_eq!(fs::read_to_string(store.dir().join(".gitignore")).unwrap(), "*\n");
+}
+
+#[test]
+fn folders_that_are_no_store_are_refused() {
+    let home = tempfile::tempdir().unwrap();
+    let open = |name: &str| Store::open(Some(Path::new(name)), home.path());
+    fs::create_dir(home.path().join("letters")).unwrap();
+    fs::write(home.path().join("letters/a.txt"), b"dear").unwrap();
+    assert!(matches!(open("letters"), Err(StoreError::NotAStore { .. })));
+    assert_eq!(fs::read_dir(home.path().join("letters")).unwrap().count(), 1);
+    fs::write(home.path().join("file"), b"").unwrap();
+    assert!(matches!(open("file"), Err(StoreError::Io { .. })));
+    drop(open("s").unwrap());
+    fs::write(home.path().join("s/format"), b"2\n").unwrap();
+    let newer = open("s").unwrap_err();
+    assert!(matches!(newer, StoreError::Newer { found: 2, known: 1, .. }), "{newer}");
+    fs::write(home.path().join("s/format"), b"\0\0").unwrap();
+    assert!(matches!(open("s"), Err(StoreError::Damaged { .. })));
+}
+
+#[test]
+fn the_lock_waits_and_then_says_so() {
+    let (_home, store) = store();
+    let guard = store.lock().unwrap();
+    let hasty = store.clone().with_wait(Duration::ZERO);
+    assert!(matches!(hasty.lock(), Err(StoreError::Locked { .. })));
+    assert!(matches!(hasty.begin("scene", "k"), Err(StoreError::Locked { .. })));
+    drop(guard);
+    hasty.lock().unwrap();
+    for name in ["..", "", "a/b", ".hidden", "a\\b", "a\0"] {
+        assert!(matches!(store.begin(name, "k"), Err(StoreError::Name { .. })), "{name}");
+        assert!(!store.contains("scene", name));
+    }
+    assert!(store.begin("scene", "k").unwrap().write(entry::MANIFEST).is_err());
+}
+
+#[test]
+fn logs_survive_a_torn_line_and_many_writers() {
+    let (_home, store) = store();
+    let read = || store.lock().unwrap().read::<u32>("history/log.jsonl");
+    assert_eq!(read().unwrap(), Log { lines: vec![], torn: false });
+    let writers: Vec<_> = (0..4)
+        .map(|writer| {
+            let store = store.clone();
+            std::thread::spawn(move || (0..10).for_each(|line| store.lock().unwrap().append("history/log.jsonl", &(writer * 10 + line)).unwrap()))
+        })
+        .collect();
+    writers.into_iter().for_each(|writer| writer.join().unwrap());
+    let mut lines = read().unwrap().lines;
+    lines.sort_unstable();
+    assert_eq!(lines, (0..40).collect::<Vec<_>>());
+
+    let path = store.dir().join("history/log.jsonl");
+    let whole = fs::read(&path).unwrap();
+    fs::write(&path, [whole.as_slice(), b"{\"ha"].concat()).unwrap();
+    assert!(read().unwrap().torn);
+    assert_eq!(read().unwrap().lines.len(), 40);
+    store.lock().unwrap().append("history/log.jsonl", &40).unwrap();
+    assert_eq!((read().unwrap().lines.len(), read().unwrap().torn), (41, false));
+    fs::write(&path, b"1\nnonsense\n2\n").unwrap();
+    assert!(matches!(read(), Err(StoreError::Damaged { .. })));
+    assert!(store.lock().unwrap().append("../log", &1).is_err());
+}
+
+#[test]
+fn atomic_writes_replace_and_leave_nothing_beside() {
+    let home = tempfile::tempdir().unwrap();
+    let path = home.path().join("deep/down/file");
+    write_atomic(&path, b"one").unwrap();
+    write_atomic(&path, b"two").unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"two");
+    assert!(write_atomic(home.path(), b"a folder").is_err());
+    assert!(write_atomic(&path.join("below a file"), b"x").is_err());
+    assert_eq!(fs::read_dir(home.path()).unwrap().count(), 1);
+    assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+}
