@@ -1,8 +1,9 @@
 //! The `phystalk` program: words become edits, edits make versions, versions become pictures.
 
-#![allow(dead_code)] // rooms open one after another
+#![allow(dead_code, unused_imports)] // rooms open one after another
 
 mod cli;
+mod history;
 
 use std::process::ExitCode;
 

@@ -18,6 +18,12 @@ impl Spec {
             .map_err(|error| SpecError::new(SpecErrorKind::File, "", format!("{} cannot be written: {error}", file.display())))
     }
 
+    /// The same spec with its scene's path made absolute, from `folder` where it is not yet.
+    pub fn absolute_from(mut self, folder: &Path) -> Result<Spec, Error> {
+        self.scene.file = absolute(&self.scene.file, folder)?;
+        Ok(self)
+    }
+
     /// The same spec with its scene's path as it reads from `folder`.
     pub fn relative_to(&self, folder: &Path) -> Result<Spec, Error> {
         let mut spec = self.clone();
@@ -27,7 +33,7 @@ impl Spec {
 }
 
 /// The absolute form of a scene's path that was written in `folder`.
-pub(super) fn absolute(file: &str, folder: &Path) -> Result<String, SpecError> {
+fn absolute(file: &str, folder: &Path) -> Result<String, SpecError> {
     if file.starts_with(BUILTIN) {
         return Ok(file.to_owned());
     }

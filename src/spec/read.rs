@@ -68,9 +68,8 @@ impl Spec {
     pub fn read(file: &Path) -> Result<Spec, SpecError> {
         let text = read_text(file)?;
         let json = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
-        let mut spec = if json { Spec::from_json(&text) } else { Spec::from_toml(&text) }?;
-        spec.scene.file = super::place::absolute(&spec.scene.file, file.parent().unwrap_or(Path::new("")))?;
-        Ok(spec)
+        let spec = if json { Spec::from_json(&text) } else { Spec::from_toml(&text) }?;
+        spec.absolute_from(file.parent().unwrap_or(Path::new("")))
     }
 }
 

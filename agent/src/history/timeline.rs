@@ -1,0 +1,189 @@
+//! Replays operations into versions, and knows where undo and redo lead.
+//!
+//! Undo walks as in jj. A version made by edits stands for itself; one made by undo or redo stands
+//! for the version that it went to. Undo goes from what the head stands for to what that one's
+//! parent stands for, so that repeated undo walks further back; redo takes the walk back in turn,
+//! and anything else ends it. Going back to a version by name is a change of its own, which undo undoes.
+
+use phystalk::spec::{Camera, Edit, Spec};
+use serde::Serialize;
+
+use super::operation::{How, Operation};
+
+/// One version of a session.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Version {
+    /// `v1`, `v2`, …
+    pub name: String,
+    /// The version that it was made from; none where that is the scene as found.
+    pub parent: Option<String>,
+    /// What was said.
+    pub words: String,
+    /// The edits that lead from the parent here.
+    pub edits: Vec<Edit>,
+    /// Hash of its spec.
+    pub spec_hash: String,
+    /// "back to v1", "forward to v3"; empty where it was edited.
+    pub note: String,
+    /// When: seconds since 1970, UTC.
+    pub time_s: u64,
+    /// What "auto" came to, once it has run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resolved: Option<serde_json::Value>,
+    /// Its spec.
+    #[serde(skip)]
+    pub spec: Spec,
+    #[serde(skip)]
+    pub(super) number: u32,
+    #[serde(skip)]
+    parent_number: Option<u32>,
+    /// What it stands for in the walk of undo; none is the base.
+    #[serde(skip)]
+    stands_for: Option<u32>,
+}
+
+/// A session as its operations tell it.
+#[derive(Clone, Debug)]
+pub(super) struct Timeline {
+    pub(super) base: Spec,
+    pub(super) versions: Vec<Version>,
+    pub(super) camera: Option<Camera>,
+    /// What was undone since the last other change, the nearest last.
+    undone: Vec<Option<u32>>,
+}
+
+/// Where a walk ends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Target(pub(super) Option<u32>);
+
+impl Timeline {
+    /// Replays a session; none where its first line is not a start.
+    pub(super) fn replay(operations: Vec<Operation>) -> Option<Timeline> {
+        let mut operations = operations.into_iter();
+        let Some(Operation::Start { base, .. }) = operations.next() else { return None };
+        let mut timeline = Timeline { base: *base, versions: Vec::new(), camera: None, undone: Vec::new() };
+        operations.for_each(|operation| timeline.push(operation));
+        Some(timeline)
+    }
+
+    /// Takes up the next operation.
+    pub(super) fn push(&mut self, operation: Operation) {
+        match operation {
+            // Only the first line starts a session.
+            Operation::Start { .. } => {}
+            Operation::Camera { camera } => self.camera = Some(camera),
+            Operation::Resolved { number, values } => {
+                if let Some(version) = self.versions.iter_mut().find(|version| version.number == number) {
+                    version.resolved = Some(values);
+                }
+            }
+            Operation::Version { number, parent, how, words, edits, spec, time_s } => {
+                let (stands_for, note) = self.walk(number, how);
+                self.versions.push(Version {
+                    name: name(number),
+                    parent: parent.map(name),
+                    words,
+                    edits,
+                    spec_hash: spec.hash(),
+                    note,
+                    time_s,
+                    resolved: None,
+                    spec: *spec,
+                    number,
+                    parent_number: parent,
+                    stands_for,
+                });
+            }
+        }
+    }
+
+    /// What a new version stands for, and how its note reads.
+    fn walk(&mut self, number: u32, how: How) -> (Option<u32>, String) {
+        match how {
+            How::Edit => {
+                self.undone.clear();
+                (Some(number), String::new())
+            }
+            How::Back(to) => {
+                self.undone.clear();
+                (Some(number), format!("back to {}", place(to)))
+            }
+            How::Undo(steps) => {
+                let mut at = self.stands_for();
+                for _ in 0..steps {
+                    let Some(before) = self.before(at) else { break };
+                    self.undone.push(at);
+                    at = before;
+                }
+                (at, format!("back to {}", place(at)))
+            }
+            How::Redo(steps) => {
+                let mut at = self.stands_for();
+                for _ in 0..steps {
+                    let Some(after) = self.undone.pop() else { break };
+                    at = after;
+                }
+                (at, format!("forward to {}", place(at)))
+            }
+        }
+    }
+
+    /// Where some steps back lead, if there is one to take.
+    pub(super) fn undo_target(&self, steps: u32) -> Option<Target> {
+        let mut at = self.stands_for();
+        let mut moved = false;
+        for _ in 0..steps {
+            let Some(before) = self.before(at) else { break };
+            (at, moved) = (before, true);
+        }
+        moved.then_some(Target(at))
+    }
+
+    /// Where some steps forward lead, if there is one to take.
+    pub(super) fn redo_target(&self, steps: u32) -> Option<Target> {
+        let last = self.undone.len().checked_sub((steps as usize).min(self.undone.len()))?;
+        self.undone.get(last).map(|at| Target(*at))
+    }
+
+    /// The newest version.
+    pub(super) fn head(&self) -> Option<&Version> {
+        self.versions.last()
+    }
+
+    /// A version by its number.
+    pub(super) fn version(&self, number: u32) -> Option<&Version> {
+        self.versions.iter().find(|version| version.number == number)
+    }
+
+    /// The spec of a version, or of the base.
+    pub(super) fn spec(&self, number: Option<u32>) -> &Spec {
+        number.and_then(|number| self.version(number)).map_or(&self.base, |version| &version.spec)
+    }
+
+    /// The number of the next version.
+    pub(super) fn next_number(&self) -> u32 {
+        self.versions.iter().map(|version| version.number).max().unwrap_or(0) + 1
+    }
+
+    fn stands_for(&self) -> Option<u32> {
+        self.head().and_then(|head| head.stands_for)
+    }
+
+    /// What the parent of a version stands for; none at the start, and where the first version is the
+    /// base itself, taken over as it was.
+    fn before(&self, at: Option<u32>) -> Option<Option<u32>> {
+        let version = self.version(at?)?;
+        let before = version.parent_number.and_then(|parent| self.version(parent)).and_then(|parent| parent.stands_for);
+        let is_base = before.is_none() && version.spec_hash == self.base.hash();
+        (!is_base).then_some(before)
+    }
+}
+
+/// `v3`.
+pub(super) fn name(number: u32) -> String {
+    format!("v{number}")
+}
+
+fn place(number: Option<u32>) -> String {
+    number.map_or_else(|| "the start".to_owned(), name)
+}
