@@ -10,6 +10,7 @@ mod passes;
 mod picture;
 pub mod profile;
 mod renderer;
+pub mod shadow;
 mod uniform;
 mod view;
 

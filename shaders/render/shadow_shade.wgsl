@@ -1,0 +1,70 @@
+// How much light reaches a point. Each layer above it hides the share of the cone of light that the
+// layer covers where the cone passes: the layer, blurred by the cone's radius there. So contact is
+// dark and tight, and what rises casts wide and faint.
+
+fn level_start(level: u32) -> u32 {
+    var start = 0u;
+    for (var l = 0u; l < level; l++) {
+        start += (SIDE >> l) * (SIDE >> l);
+    }
+    return start;
+}
+
+/// Coverage at a place, in texels of level 0, through a quadratic B-spline of one level's texels.
+fn smooth_at(layer: u32, level: u32, place: vec2<f32>) -> f32 {
+    let side = i32(SIDE >> level);
+    let start = layer * PYRAMID_SIZE + level_start(level);
+    let s = place / f32(1u << level);
+    let cell = vec2<i32>(floor(s));
+    let f = s - floor(s) - 0.5;
+    var sum = 0.0;
+    for (var k = 0; k < 9; k++) {
+        let tap = vec2(k % 3, k / 3);
+        let p = cell + tap - 1;
+        if all(p >= vec2(0)) && all(p < vec2(side)) {
+            sum += spline(f.x, tap.x) * spline(f.y, tap.y) * pyramid[start + u32(p.y * side + p.x)];
+        }
+    }
+    return sum;
+}
+
+/// Coverage blurred to a standard deviation in texels. Level l has 2^l / sqrt(2) of it.
+fn blurred(layer: u32, place: vec2<f32>, sigma: f32) -> f32 {
+    let level = clamp(log2(max(sigma * 1.4142135, 1.0)), 0.0, f32(LEVELS - 1u));
+    let lower = min(u32(level), LEVELS - 2u);
+    return mix(smooth_at(layer, lower, place), smooth_at(layer, lower + 1u, place), level - f32(lower));
+}
+
+/// 1 where a point is open to the light or beside the map, 0 far below a static surface.
+fn reached(map: Map, p: vec3<f32>) -> f32 {
+    let cell = vec2<i32>(floor((p.xy - map.origin) / (map.texel * ROOF_TEXELS)));
+    if any(cell < vec2(0)) || any(cell >= vec2(i32(ROOF_SIDE))) {
+        return 1.0;
+    }
+    let top = roof[u32(cell.y) * ROOF_SIDE + u32(cell.x)];
+    if top == 0u {
+        return 1.0;
+    }
+    return 1.0 - smoothstep(2.0, 4.0, (from_ordered(top) - p.z) / map.texel);
+}
+
+/// The factor on the colour of a point: 1 in full light, 1 - DARKNESS where nothing of it arrives.
+fn shade_at(map: Map, p: vec3<f32>) -> f32 {
+    let place = (p.xy - map.origin) / map.texel;
+    let edge = min(min(place.x, place.y), f32(SIDE) - max(place.x, place.y)) / (f32(SIDE) * MAP_EDGE);
+    if edge <= 0.0 {
+        return 1.0;
+    }
+    var light = 1.0;
+    for (var layer = 0u; layer < LAYERS; layer++) {
+        let bottom = boundary(map, layer);
+        let top = boundary(map, layer + 1u);
+        let above = clamp((top - p.z) / (top - bottom), 0.0, 1.0);
+        // The last level is one number: what the whole layer covers.
+        if above > 0.0 && pyramid[(layer + 1u) * PYRAMID_SIZE - 1u] > 0.0 {
+            let rise = 0.5 * (top + max(bottom, p.z)) - p.z;
+            light *= 1.0 - above * blurred(layer, place, SPREAD * rise / map.texel);
+        }
+    }
+    return 1.0 - DARKNESS * (1.0 - light) * smoothstep(0.0, 1.0, edge) * reached(map, p);
+}
