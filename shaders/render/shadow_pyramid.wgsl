@@ -22,8 +22,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     for (var level = 1u; level < LEVELS; level++) {
         storageBarrier();
         let side = i32(SIDE >> level);
-        let from = base + level_start(level - 1u);
-        let to = base + level_start(level);
+        let finer = base + level_start(level - 1u);
+        let coarser = base + level_start(level);
         for (var t = lane; t < u32(side * side); t += PYRAMID_GROUP) {
             let corner = 2 * vec2<i32>(i32(t) % side, i32(t) / side) - 1;
             var sum = 0.0;
@@ -32,11 +32,11 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
                 let tap = vec2(k % 4, k / 4);
                 let p = corner + tap;
                 if all(p >= vec2(0)) && all(p < vec2(2 * side)) {
-                    let w = select(vec2(1.0), vec2(3.0), tap == vec2(1) || tap == vec2(2));
-                    sum += w.x * w.y * pyramid[from + u32(p.y * 2 * side + p.x)];
+                    let w = select(vec2(1.0), vec2(3.0), (tap == vec2(1)) | (tap == vec2(2)));
+                    sum += w.x * w.y * pyramid[finer + u32(p.y * 2 * side + p.x)];
                 }
             }
-            pyramid[to + t] = sum / 64.0;
+            pyramid[coarser + t] = sum / 64.0;
         }
     }
 }

@@ -14,9 +14,17 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     }
     let mean = geometry[receiver[i] * 4u];
     let map = current_map();
-    let cell = vec2<i32>(floor((mean.xy - map.origin) / (map.texel * ROOF_TEXELS)));
-    let inside = all(cell >= vec2(0)) && all(cell < vec2(i32(ROOF_SIDE)));
-    if inside && mean.w >= ROOF_OPACITY && mean.z <= map.low + map.texel {
-        atomicMax(&roof[u32(cell.y) * ROOF_SIDE + u32(cell.x)], ordered(mean.z));
+    if mean.w < ROOF_OPACITY || mean.z > map.low + map.texel {
+        return;
+    }
+    let cov = geometry[receiver[i] * 4u + 1u];
+    let centre = (mean.xy - map.origin) / (map.texel * ROOF_TEXELS);
+    let reach = min(1.5 * sqrt(vec2(cov.x, cov.w)) / (map.texel * ROOF_TEXELS), vec2(ROOF_REACH));
+    let first = max(vec2<i32>(floor(centre - reach)), vec2(0));
+    let last = min(vec2<i32>(floor(centre + reach)), vec2(i32(ROOF_SIDE) - 1));
+    for (var y = first.y; y <= last.y; y++) {
+        for (var x = first.x; x <= last.x; x++) {
+            atomicMax(&roof[u32(y) * ROOF_SIDE + u32(x)], ordered(mean.z));
+        }
     }
 }

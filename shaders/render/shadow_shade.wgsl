@@ -35,9 +35,8 @@ fn blurred(layer: u32, place: vec2<f32>, sigma: f32) -> f32 {
     return mix(smooth_at(layer, lower, place), smooth_at(layer, lower + 1u, place), level - f32(lower));
 }
 
-/// 1 where a point is open to the light or beside the map, 0 far below a static surface.
-fn reached(map: Map, p: vec3<f32>) -> f32 {
-    let cell = vec2<i32>(floor((p.xy - map.origin) / (map.texel * ROOF_TEXELS)));
+/// 1 where one cell of the static surface lets light through to a height, 0 far below the surface.
+fn cell_open(map: Map, cell: vec2<i32>, z: f32) -> f32 {
     if any(cell < vec2(0)) || any(cell >= vec2(i32(ROOF_SIDE))) {
         return 1.0;
     }
@@ -45,7 +44,17 @@ fn reached(map: Map, p: vec3<f32>) -> f32 {
     if top == 0u {
         return 1.0;
     }
-    return 1.0 - smoothstep(2.0, 4.0, (from_ordered(top) - p.z) / map.texel);
+    return 1.0 - smoothstep(0.5, 1.0, (from_ordered(top) - z) / (map.texel * ROOF_TEXELS));
+}
+
+/// 1 where a point is open to the light, 0 below a static surface, between them over a cell.
+fn reached(map: Map, p: vec3<f32>) -> f32 {
+    let s = (p.xy - map.origin) / (map.texel * ROOF_TEXELS) - 0.5;
+    let cell = vec2<i32>(floor(s));
+    let f = s - floor(s);
+    let near = mix(cell_open(map, cell, p.z), cell_open(map, cell + vec2(1, 0), p.z), f.x);
+    let far = mix(cell_open(map, cell + vec2(0, 1), p.z), cell_open(map, cell + vec2(1, 1), p.z), f.x);
+    return mix(near, far, f.y);
 }
 
 /// The factor on the colour of a point: 1 in full light, 1 - DARKNESS where nothing of it arrives.
@@ -55,7 +64,10 @@ fn shade_at(map: Map, p: vec3<f32>) -> f32 {
     if edge <= 0.0 {
         return 1.0;
     }
-    var light = 1.0;
+    // Layers that hide different parts of the cone multiply; layers that hide the same part count
+    // once. A thing's layers lie between the two, and so does the mean.
+    var apart = 1.0;
+    var together = 1.0;
     for (var layer = 0u; layer < LAYERS; layer++) {
         let bottom = boundary(map, layer);
         let top = boundary(map, layer + 1u);
@@ -63,8 +75,11 @@ fn shade_at(map: Map, p: vec3<f32>) -> f32 {
         // The last level is one number: what the whole layer covers.
         if above > 0.0 && pyramid[(layer + 1u) * PYRAMID_SIZE - 1u] > 0.0 {
             let rise = 0.5 * (top + max(bottom, p.z)) - p.z;
-            light *= 1.0 - above * blurred(layer, place, SPREAD * rise / map.texel);
+            let passed = 1.0 - above * blurred(layer, place, SPREAD * rise / map.texel);
+            apart *= passed;
+            together = min(together, passed);
         }
     }
+    let light = sqrt(apart * together);
     return 1.0 - DARKNESS * (1.0 - light) * smoothstep(0.0, 1.0, edge) * reached(map, p);
 }

@@ -33,8 +33,8 @@ const LEVELS: u32 = SIDE.ilog2() + 1;
 /// Texels of one layer, all levels together.
 const PYRAMID_SIZE: u32 = (4 * SIDE * SIDE - 1) / 3;
 
-/// Standard deviation of the light's cone a metre away: half the tangent of its half angle, 39 degrees.
-const SPREAD: f32 = 0.4;
+/// Standard deviation of the light's cone a metre away: half the tangent of its half angle, 33 degrees.
+const SPREAD: f32 = 0.32;
 
 /// How much of the light on a surface comes from the cone. The rest is bounced about and stays.
 const DARKNESS: f32 = 0.72;
@@ -58,8 +58,11 @@ const LARGEST_DEPTH: f32 = 128.0;
 /// Half width of the tent a caster is spread with, texels, at most.
 const WIDEST_TENT: f32 = 3.0;
 
-/// Texels of the map along a cell of the static surface's map, whose Gaussians may lie sparse.
-const ROOF_TEXELS: u32 = 2;
+/// Texels of the map along a cell of the static surface's map.
+const ROOF_TEXELS: u32 = 4;
+
+/// Cells a static Gaussian reaches to each side, at most.
+const ROOF_REACH: f32 = 3.0;
 
 /// Static Gaussians fainter than this are no surface.
 const ROOF_OPACITY: f32 = 0.3;
@@ -238,6 +241,7 @@ fn constants() -> Vec<(&'static str, Constant)> {
         ("WIDEST_TENT", Constant::F32(WIDEST_TENT)),
         ("ROOF_TEXELS", Constant::F32(ROOF_TEXELS as f32)),
         ("ROOF_SIDE", Constant::U32(SIDE / ROOF_TEXELS)),
+        ("ROOF_REACH", Constant::F32(ROOF_REACH)),
         ("ROOF_OPACITY", Constant::F32(ROOF_OPACITY)),
         ("GROUP_SIZE", Constant::U32(GROUP_SIZE)),
         ("BOUNDS_GROUP", Constant::U32(BOUNDS_GROUP)),

@@ -1,9 +1,13 @@
 //! The contact shadow in plain Rust, pass by pass.
 
 use super::{
-    DARKNESS, DEPTH_UNIT, LARGEST_DEPTH, LAYERS, LEVELS, MAP_EDGE, ROOF_OPACITY, ROOF_TEXELS, SIDE, SMALLEST_TEXEL, SPREAD, TEXEL_STEPS, WIDEST_TENT,
+    DARKNESS, DEPTH_UNIT, LARGEST_DEPTH, LAYERS, LEVELS, MAP_EDGE, ROOF_OPACITY, ROOF_REACH, ROOF_TEXELS, SIDE, SMALLEST_TEXEL, SPREAD, TEXEL_STEPS,
+    WIDEST_TENT,
 };
 use glam::{Vec2, Vec3};
+
+/// Cells along a side of the static surface's map.
+const ROOF_SIDE: i32 = (SIDE / ROOF_TEXELS) as i32;
 
 /// The record of a Gaussian, as in [`crate::skin::Splats`].
 type Record = [f32; 16];
@@ -34,12 +38,8 @@ impl ShadowTwin {
         let map = Map::around(low, high, ground_m);
         let mut depth = vec![vec![0u32; (SIDE * SIDE) as usize]; LAYERS as usize];
         casters.iter().for_each(|caster| map.splat(caster, &mut depth));
-        let mut roof = vec![None; ((SIDE / ROOF_TEXELS) * (SIDE / ROOF_TEXELS)) as usize];
-        for receiver in receivers.iter().filter(|r| r[3] >= ROOF_OPACITY && r[2] <= map.low + map.texel) {
-            if let Some(cell) = map.roof_cell(Vec3::from_slice(receiver)) {
-                roof[cell] = Some(roof[cell].map_or(receiver[2], |top: f32| top.max(receiver[2])));
-            }
-        }
+        let mut roof = vec![None; (ROOF_SIDE * ROOF_SIDE) as usize];
+        receivers.iter().filter(|r| r[3] >= ROOF_OPACITY && r[2] <= map.low + map.texel).for_each(|r| map.cover(r, &mut roof));
         Some(ShadowTwin { map, pyramid: depth.iter().map(|layer| pyramid(layer)).collect(), roof })
     }
 
@@ -50,21 +50,32 @@ impl ShadowTwin {
         if edge <= 0.0 {
             return 1.0;
         }
-        let mut light = 1.0;
+        let (mut apart, mut together) = (1.0, 1.0f32);
         for (layer, levels) in self.pyramid.iter().enumerate() {
             let (bottom, top) = (self.map.boundary(layer as u32), self.map.boundary(layer as u32 + 1));
             let above = ((top - p.z) / (top - bottom)).clamp(0.0, 1.0);
             if above > 0.0 && levels[LEVELS as usize - 1][0] > 0.0 {
                 let rise = 0.5 * (top + bottom.max(p.z)) - p.z;
-                light *= 1.0 - above * blurred(levels, place, SPREAD * rise / self.map.texel);
+                let passed = 1.0 - above * blurred(levels, place, SPREAD * rise / self.map.texel);
+                apart *= passed;
+                together = together.min(passed);
             }
         }
+        let light = (apart * together).sqrt();
         1.0 - DARKNESS * (1.0 - light) * smoothstep(0.0, 1.0, edge) * self.reached(p)
     }
 
     fn reached(&self, p: Vec3) -> f32 {
-        let top = self.map.roof_cell(p).and_then(|cell| self.roof[cell]);
-        top.map_or(1.0, |top| 1.0 - smoothstep(2.0, 4.0, (top - p.z) / self.map.texel))
+        let s = (p.truncate() - self.map.origin) / self.map.cell_m() - 0.5;
+        let (cell, f) = (s.floor().as_ivec2(), s - s.floor());
+        let open = |x: i32, y: i32| {
+            let (x, y) = (cell.x + x, cell.y + y);
+            let inside = x >= 0 && y >= 0 && x < ROOF_SIDE && y < ROOF_SIDE;
+            let top = if inside { self.roof[(y * ROOF_SIDE + x) as usize] } else { None };
+            top.map_or(1.0, |top| 1.0 - smoothstep(0.5, 1.0, (top - p.z) / self.map.cell_m()))
+        };
+        let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        mix(mix(open(0, 0), open(1, 0), f.x), mix(open(0, 1), open(1, 1), f.x), f.y)
     }
 }
 
@@ -95,10 +106,20 @@ impl Map {
         ((t * LAYERS as f32) as usize).min(LAYERS as usize - 1)
     }
 
-    fn roof_cell(&self, p: Vec3) -> Option<usize> {
-        let cell = ((p.truncate() - self.origin) / (self.texel * ROOF_TEXELS as f32)).floor().as_ivec2();
-        let side = (SIDE / ROOF_TEXELS) as i32;
-        (cell.min_element() >= 0 && cell.max_element() < side).then_some((cell.y * side + cell.x) as usize)
+    fn cell_m(&self) -> f32 {
+        self.texel * ROOF_TEXELS as f32
+    }
+
+    fn cover(&self, receiver: &Record, roof: &mut [Option<f32>]) {
+        let centre = (Vec2::from_slice(receiver) - self.origin) / self.cell_m();
+        let reach = (1.5 * Vec2::new(receiver[4].sqrt(), receiver[7].sqrt()) / self.cell_m()).min(Vec2::splat(ROOF_REACH));
+        let (first, last) = ((centre - reach).floor().as_ivec2(), (centre + reach).floor().as_ivec2());
+        for y in first.y.max(0)..=last.y.min(ROOF_SIDE - 1) {
+            for x in first.x.max(0)..=last.x.min(ROOF_SIDE - 1) {
+                let cell = &mut roof[(y * ROOF_SIDE + x) as usize];
+                *cell = Some(cell.map_or(receiver[2], |top: f32| top.max(receiver[2])));
+            }
+        }
     }
 
     fn splat(&self, caster: &Record, depth: &mut [Vec<u32>]) {
