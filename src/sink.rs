@@ -14,6 +14,8 @@ pub struct Frame {
     pub size: [u32; 2],
     /// sRGB, opaque, rows from the top; `size[0] * size[1] * 4` bytes.
     pub rgba8: Arc<[u8]>,
+    /// The same picture as a PNG file, byte for byte what the store keeps.
+    pub png: Arc<[u8]>,
     /// Expected depth in metres along the view axis, +inf where nothing is; only where asked for.
     pub depth: Option<Arc<[f32]>>,
     /// Index of the object that covers the pixel most, `u32::MAX` where none does; only where asked for.

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// Which rooms of the engine each room may name. `gpu`, `spec`, `store` and the sink are leaves.
 const ALLOWED: &[(&str, &[&str])] = &[
-    ("spec", &[]),
-    ("store", &["spec"]),
+    ("spec", &["store"]),
+    ("store", &[]),
     ("gpu", &[]),
     ("scene", &["gpu", "spec"]),
     ("proxy", &["scene", "gpu", "spec"]),

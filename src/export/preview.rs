@@ -175,7 +175,7 @@ mod tests {
         }
         let at = index.min(8) * 7;
         picture.paste(&Raster::filled([20, 20], [200, 30, 40, 255]), at, size[1] / 3 + at / 2);
-        Frame { index, time_s: f64::from(index) / 50.0, size, rgba8: picture.rgba8.into(), depth: None, id: None }
+        Frame { index, time_s: f64::from(index) / 50.0, size, rgba8: picture.rgba8.into(), png: Vec::new().into(), depth: None, id: None }
     }
 
     fn decoded(path: &Path) -> Vec<(Raster, u32)> {

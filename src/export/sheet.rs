@@ -83,7 +83,7 @@ mod tests {
     fn frame(index: u32, size: [u32; 2]) -> Frame {
         let shade = (index % 200) as u8;
         let rgba8 = Raster::filled(size, [shade, 100, 255 - shade, 255]).rgba8;
-        Frame { index, time_s: f64::from(index) / 50.0, size, rgba8: rgba8.into(), depth: None, id: None }
+        Frame { index, time_s: f64::from(index) / 50.0, size, rgba8: rgba8.into(), png: Vec::new().into(), depth: None, id: None }
     }
 
     #[test]

@@ -21,3 +21,16 @@ pub use kernel::{Access, Constant, Kernel, KernelSource};
 pub use recording::{PassTime, Recording, Step};
 pub use scan::Scan;
 pub use sort::{RadixSort, SortBuffers, SortPlan};
+
+/// Every pass of the room in every form, for validation.
+pub fn kernels() -> Vec<KernelSource> {
+    let forms = [
+        (Tier::Gpu, Blocks { workgroup: 256, elements_a_thread: 16, subgroups: 8, elements: 4096 }),
+        (Tier::Cpu, Blocks { workgroup: 8, elements_a_thread: 512, subgroups: 1, elements: 512 }),
+    ];
+    let of_form = |(tier, blocks): (Tier, Blocks)| {
+        let sorts = (1..=8).flat_map(move |width| sort::sources(&blocks, tier, width));
+        scan::sources(&blocks, tier).into_iter().chain(sorts).chain([extent::source(&blocks)])
+    };
+    forms.into_iter().flat_map(of_form).collect()
+}

@@ -95,6 +95,8 @@ pub struct ObjectMetrics {
     pub spread_m: Vec<f64>,
     /// Lowest particle over what is below it.
     pub gap_m: Vec<f64>,
+    /// Times at which it met what is below it.
+    pub impacts_s: Vec<f64>,
 }
 
 /// One expectation of the spec.

@@ -4,8 +4,23 @@
 //! a pure function of its declared inputs; its key is a hash of those inputs, the stage's version and
 //! its shader text. Equal key, equal bytes on the same device.
 
+mod delivery;
+mod derive;
+mod engine;
+mod error;
+mod keys;
 mod metrics;
+mod pack;
 mod plan;
+mod reasons;
+mod run;
+mod segments;
+mod still;
+mod summary;
 
+pub use derive::lookup;
+pub use engine::{Engine, Report};
+pub use error::EngineError;
 pub use metrics::{ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, SubstepRange};
 pub use plan::{Action, Plan, PlannedStage, Quality, RunOptions, StageName};
+pub use still::BUILTIN_DEMO;

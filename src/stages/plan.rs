@@ -34,7 +34,7 @@ impl Default for RunOptions {
 }
 
 /// The five stages, in their order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StageName {
     /// Reads and prunes the file, selects the objects.

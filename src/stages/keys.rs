@@ -1,0 +1,127 @@
+//! Keys: a hash of a stage's declared inputs, its version and its shader text. Nothing that is not in
+//! here may change what a stage makes.
+
+use crate::gpu::Gpu;
+use crate::spec::{Auto, Event, Force, Material, Object, Pin, Spec, Until};
+use crate::world::Resolved;
+use crate::{proxy, render, skin, solver};
+use serde::Serialize;
+use serde_json::json;
+
+/// Changed whenever the meaning of any key does.
+const KEY_FORMAT: u32 = 1;
+/// Version of reading, turning, pruning and selecting.
+const SCENE_VERSION: u32 = 1;
+/// Version of choosing neighbours and weights.
+const BIND_VERSION: u32 = 1;
+/// Version of what a segment of motion holds.
+const SEGMENT_VERSION: u32 = 1;
+/// Version of what pictures hold.
+const PICTURE_VERSION: u32 = 1;
+
+/// BLAKE3 of a stage's name and declared inputs, in hexadecimal.
+fn hash(stage: &str, inputs: &impl Serialize) -> String {
+    let text = serde_json::to_vec(&json!([KEY_FORMAT, stage, inputs])).unwrap_or_default();
+    blake3::hash(&text).to_hex().to_string()
+}
+
+/// Keys of the stages that come before motion.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct StillKeys {
+    pub scene: String,
+    pub proxy: String,
+    pub bind: String,
+}
+
+/// What the scene stage reads: the file's content, its axes, and which Gaussians belong to what.
+pub(super) fn scene(spec: &Spec, file_blake3: &str) -> String {
+    let objects: Vec<_> = spec.objects.iter().map(|o| (&o.name, &o.select)).collect();
+    hash("scene", &json!([SCENE_VERSION, file_blake3, spec.scene.up, spec.scene.metres_per_unit, objects, spec.world.ground.height_m]))
+}
+
+/// The keys before motion, given what the scene resolved to.
+pub(super) fn still(spec: &Spec, scene: String, resolved: &Resolved) -> StillKeys {
+    let kinds: Vec<_> = spec.objects.iter().map(|o| o.proxy).collect();
+    let proxy = hash("proxy", &json!([proxy::VERSION, scene, kinds, resolved.cell_m, resolved.ground_m, spec.seed]));
+    let bind = hash("bind", &json!([BIND_VERSION, proxy, spec.skin]));
+    StillKeys { scene, proxy, bind }
+}
+
+/// Device, driver and kind: the bits of motion and pictures are those of one device.
+fn device(gpu: &Gpu) -> serde_json::Value {
+    json!([gpu.info.name, format!("{:?}", gpu.info.backend), gpu.info.driver, gpu.info.driver_info])
+}
+
+/// What a prestress depends on: the solid, what it is made of, what it stands on, and gravity.
+pub(super) fn prestress(spec: &Spec, keys: &StillKeys, resolved: &Resolved, gpu: &Gpu) -> String {
+    let bodies: Vec<_> = spec.objects.iter().map(|o| (&o.material, o.rest)).collect();
+    let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s <= 0.0).map(|p| (&p.object, &p.region)).collect();
+    hash(
+        "prestress",
+        &json!([solver::VERSION, text_hash(&solver::shader_text()), device(gpu), keys.proxy, resolved.cell_m, resolved.ground_m, bodies, pins]),
+    ) + &hash("support", &json!([spec.world, spec.colliders]))
+}
+
+/// What motion until `to_s` depends on, and nothing that the spec says of later times.
+///
+/// An event at exactly `to_s` is later: it takes effect at that boundary, after the state there was kept.
+pub(super) fn motion(spec: &Spec, prestress: &str, frames: std::ops::RangeInclusive<u32>, to_s: f64) -> String {
+    let starts: Vec<_> = spec.objects.iter().map(start).collect();
+    let mut events: Vec<&Event> = spec.events.iter().filter(|e| e.at_s < to_s).collect();
+    events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+    let events: Vec<_> = events.iter().map(|e| (e.at_s, &e.object, e.push_m_s, e.velocity_m_s)).collect();
+    let forces: Vec<_> = spec.forces.iter().filter(|f| f.from_s < to_s).map(|f| force_until(f, to_s)).collect();
+    let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s < to_s).map(|p| pin_until(p, to_s)).collect();
+    hash("motion", &json!([SEGMENT_VERSION, prestress, spec.seed, spec.time.fps, starts, events, forces, pins, frames.start(), frames.end()]))
+}
+
+fn start(object: &Object) -> serde_json::Value {
+    json!([object.name, object.offset_m, object.rotate_deg, object.velocity_m_s, object.spin_rad_s])
+}
+
+/// Seconds until which something lasts, as far as `to_s` can tell.
+fn end_before(until: Until, to_s: f64) -> Option<f64> {
+    match until {
+        Until::Time(end) if end < to_s => Some(end),
+        _ => None,
+    }
+}
+
+fn force_until(force: &Force, to_s: f64) -> serde_json::Value {
+    json!([force.object, force.acceleration_m_s2, force.from_s, end_before(force.to_s, to_s)])
+}
+
+fn pin_until(pin: &Pin, to_s: f64) -> serde_json::Value {
+    json!([pin.object, pin.region, pin.from_s, end_before(pin.to_s, to_s)])
+}
+
+/// What the pictures depend on: the whole motion, the skin, the camera, the size, the renderer.
+pub(super) fn picture(spec: &Spec, motion: &str, keys: &StillKeys, resolved: &Resolved, gpu: &Gpu) -> String {
+    let shaders = text_hash(&(skin::shader_text() + &render::shader_text()));
+    hash(
+        "picture",
+        &json!([
+            PICTURE_VERSION,
+            skin::VERSION,
+            render::VERSION,
+            shaders,
+            device(gpu),
+            motion,
+            keys.bind,
+            resolved.camera,
+            resolved.size,
+            spec.output.background,
+            resolved.frames
+        ]),
+    )
+}
+
+fn text_hash(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+/// Whether an object's stiffness was left to the program.
+pub(super) fn young_is_auto(material: &Material) -> bool {
+    let Material::Elastic(elastic) = material;
+    elastic.young_pa == Auto::Auto
+}

@@ -1,0 +1,165 @@
+//! Motion in pieces of a quarter second, each kept under a key of its own.
+//!
+//! A segment's key knows what the spec says until the segment's end and nothing of later times, so
+//! versions that agree until some moment share everything before it: an edit at 1.2 s goes on from
+//! the state at the end of the last common segment, and a longer duration appends.
+
+use super::{EngineError, keys};
+use crate::spec::Spec;
+use crate::store::{Entry, Store};
+use crate::world::measure::Row;
+use serde::{Deserialize, Serialize};
+
+/// Length of a segment.
+const SEGMENT_S: f64 = 0.25;
+
+/// A run of frames that are simulated and kept together.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Segment {
+    pub key: String,
+    /// First frame that it holds; frame 0 belongs to the first segment.
+    pub first: u32,
+    /// Last frame that it holds, where its checkpoint stands.
+    pub last: u32,
+}
+
+/// All segments of a run.
+pub(super) fn layout(spec: &Spec, prestress: &str, frames: u32) -> Vec<Segment> {
+    let fps = spec.time.fps;
+    let length = ((f64::from(fps) * SEGMENT_S).round() as u32).max(1);
+    let end = frames.saturating_sub(1);
+    let mut segments = Vec::new();
+    let mut first = 0;
+    loop {
+        let last = (first.max(1) - 1 + length).min(end);
+        let key = keys::motion(spec, prestress, first..=last, f64::from(last) / f64::from(fps));
+        segments.push(Segment { key, first, last });
+        if last >= end {
+            return segments;
+        }
+        first = last + 1;
+    }
+}
+
+/// What a segment says of itself beside its motion.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct SegmentMeta {
+    /// Rows of each frame, one for each object.
+    pub rows: Vec<Vec<Row>>,
+    /// What the solver did in it.
+    pub solver: SolverTotals,
+    /// Bytes of one frame of motion; 0 where motion was not kept.
+    pub frame_bytes: usize,
+}
+
+/// Sums over a stretch of motion.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct SolverTotals {
+    pub substeps: u64,
+    pub dt_min_s: f64,
+    pub dt_max_s: f64,
+    pub retries: u32,
+    pub nonfinite: u64,
+    pub softened: Vec<String>,
+    pub seconds: f64,
+}
+
+impl SolverTotals {
+    /// Adds a later stretch.
+    pub fn add(&mut self, later: &SolverTotals) {
+        if later.substeps > 0 {
+            self.dt_min_s = if self.substeps == 0 { later.dt_min_s } else { self.dt_min_s.min(later.dt_min_s) };
+            self.dt_max_s = self.dt_max_s.max(later.dt_max_s);
+        }
+        self.substeps += later.substeps;
+        self.retries += later.retries;
+        self.nonfinite = later.nonfinite.max(self.nonfinite);
+        self.seconds += later.seconds;
+        for text in &later.softened {
+            if !self.softened.contains(text) {
+                self.softened.push(text.clone());
+            }
+        }
+    }
+}
+
+/// A segment from the store.
+pub(super) struct Kept {
+    pub meta: SegmentMeta,
+    entry: Entry,
+}
+
+impl Kept {
+    /// Motion of all its frames, one after another; `None` where it was not kept.
+    pub fn motion(&self) -> Result<Option<Vec<u8>>, EngineError> {
+        Ok(if self.meta.frame_bytes > 0 { Some(self.entry.read("motion")?) } else { None })
+    }
+
+    /// The state at its last frame.
+    pub fn checkpoint(&self) -> Result<Vec<u8>, EngineError> {
+        Ok(self.entry.read("checkpoint")?)
+    }
+}
+
+/// Looks a segment up; anything unreadable counts as absent.
+pub(super) fn get(store: &Store, segment: &Segment) -> Result<Option<Kept>, EngineError> {
+    let Some(entry) = store.get("motion", &segment.key)? else { return Ok(None) };
+    let frames = (segment.last - segment.first + 1) as usize;
+    let meta = serde_json::from_value::<SegmentMeta>(entry.meta().clone()).ok().filter(|meta| meta.rows.len() == frames);
+    Ok(meta.map(|meta| Kept { meta, entry }))
+}
+
+/// Keeps a finished segment.
+pub(super) fn keep(store: &Store, segment: &Segment, meta: &SegmentMeta, motion: &[u8], checkpoint: &[u8]) -> Result<(), EngineError> {
+    let entry = store.begin("motion", &segment.key)?;
+    if meta.frame_bytes > 0 {
+        entry.put("motion", motion)?;
+    }
+    entry.put("checkpoint", checkpoint)?;
+    entry.finish(serde_json::to_value(meta).unwrap_or_default())?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spec::{Event, Spec};
+
+    fn keys_of(spec: &Spec, frames: u32) -> Vec<String> {
+        layout(spec, "prestress", frames).into_iter().map(|s| s.key).collect()
+    }
+
+    fn spec() -> Spec {
+        Spec::of_scene("vase.splat")
+    }
+
+    #[test]
+    fn segments_cover_every_frame_once() {
+        for frames in [1, 2, 13, 14, 101, 401] {
+            let segments = layout(&spec(), "p", frames);
+            assert_eq!(segments[0].first, 0);
+            assert_eq!(segments[segments.len() - 1].last, frames - 1);
+            assert!(segments.windows(2).all(|w| w[1].first == w[0].last + 1));
+        }
+    }
+
+    #[test]
+    fn an_event_changes_only_segments_that_end_after_it() {
+        let before = spec();
+        let mut after = before.clone();
+        after.events.push(Event { name: "push".into(), at_s: 1.2, object: "vase".into(), push_m_s: Some([1.0, 0.0, 0.0]), velocity_m_s: None });
+        let (a, b) = (keys_of(&before, 101), keys_of(&after, 101));
+        let segments = layout(&before, "p", 101);
+        for (index, segment) in segments.iter().enumerate() {
+            let ends_after = f64::from(segment.last) / 50.0 > 1.2;
+            assert_eq!(a[index] != b[index], ends_after, "segment {index} ends at frame {}", segment.last);
+        }
+    }
+
+    #[test]
+    fn a_longer_duration_keeps_every_whole_segment() {
+        let (short, long) = (keys_of(&spec(), 101), keys_of(&spec(), 201));
+        let shared = short.iter().zip(&long).take_while(|(a, b)| a == b).count();
+        assert!(shared >= short.len() - 1);
+    }
+}

@@ -1,0 +1,123 @@
+//! A finished run as `metrics.json` tells it.
+
+use super::engine::Ready;
+use super::segments::SolverTotals;
+use super::{ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, StageName, SubstepRange, keys, lookup};
+use crate::gpu::Gpu;
+use crate::render::View;
+use crate::solver::Advance;
+use crate::spec::Spec;
+use crate::spec::expect::Condition;
+use crate::world::bodies::Matter;
+use crate::world::measure::Row;
+use std::collections::BTreeMap;
+
+/// Sums of one advance.
+pub(super) fn totals(advance: &Advance) -> SolverTotals {
+    SolverTotals {
+        substeps: advance.substeps,
+        dt_min_s: if advance.substeps > 0 { advance.dt_min_s } else { 0.0 },
+        dt_max_s: advance.dt_max_s,
+        retries: advance.retries,
+        nonfinite: 0,
+        softened: advance
+            .softened
+            .iter()
+            .map(|s| format!("object {}: young_pa times {} from {:.3} s, to stay stable", s.object, s.factor, s.time_s))
+            .collect(),
+        seconds: 0.0,
+    }
+}
+
+/// Everything that was measured.
+pub(super) fn metrics(
+    spec: &Spec,
+    ready: &Ready,
+    matter: &Matter,
+    rows: &[Vec<Row>],
+    totals: &SolverTotals,
+    seconds: &BTreeMap<StageName, f64>,
+    gpu: &Gpu,
+) -> Metrics {
+    let fps = spec.time.fps;
+    let mut metrics = Metrics {
+        version: String::new(),
+        spec: spec.hash(),
+        fps,
+        frames: rows.len() as u32,
+        duration_s: rows.len().saturating_sub(1) as f64 / f64::from(fps),
+        solver: SolverMetrics {
+            device: gpu.name().to_owned(),
+            quality: if ready.draft { "draft" } else { "full" }.to_owned(),
+            cell_m: ready.resolved.cell_m,
+            substep_s: SubstepRange { min: totals.dt_min_s, max: totals.dt_max_s },
+            substeps: totals.substeps,
+            particles: matter.particles.len() as u64,
+            nonfinite: totals.nonfinite,
+            retries: totals.retries,
+            softened: totals.softened.clone(),
+            simulate_s: totals.seconds,
+        },
+        resolved: resolved(spec, ready, matter),
+        seconds: seconds.iter().map(|(stage, s)| (stage.as_str().to_owned(), *s)).collect(),
+        objects: spec.objects.iter().enumerate().map(|(i, o)| (o.name.clone(), object(spec, ready, matter, rows, i))).collect(),
+        expect: Vec::new(),
+    };
+    metrics.expect = spec.expectations.iter().map(|e| expectation(&metrics, &e.that)).collect();
+    metrics
+}
+
+/// Values that were `"auto"`, by path.
+fn resolved(spec: &Spec, ready: &Ready, matter: &Matter) -> serde_json::Map<String, serde_json::Value> {
+    let mut values = serde_json::Map::new();
+    for (object, young_pa) in spec.objects.iter().zip(&matter.young_pa) {
+        if keys::young_is_auto(&object.material) {
+            values.insert(format!("object.{}.material.young_pa", object.name), (*young_pa).into());
+        }
+    }
+    values.extend(ready.resolved.report(spec));
+    let c = &ready.resolved.camera;
+    let point = |p: [f64; 3]| glam::Vec3::from(p.map(|v| v as f32));
+    let view = View::look_at(point(c.eye_m), point(c.target_m), c.fov_deg as f32, ready.resolved.size);
+    values.insert("camera".to_owned(), serde_json::to_value(view).unwrap_or_default());
+    values
+}
+
+fn object(spec: &Spec, ready: &Ready, matter: &Matter, rows: &[Vec<Row>], index: usize) -> ObjectMetrics {
+    let column = |pick: fn(&Row) -> f64| rows.iter().map(|r| pick(&r[index])).collect::<Vec<f64>>();
+    let range = matter.bodies.ranges[index].clone();
+    let facts = &ready.prepared.value.object_facts(spec)[index];
+    let particles = &matter.particles.position_m[range.clone()];
+    let lowest = particles.iter().map(|p| f64::from(p.z)).fold(f64::INFINITY, f64::min);
+    let mut metrics = ObjectMetrics {
+        particles: range.len() as u64,
+        gaussians: matter.gaussians[index] as u64,
+        mass_kg: matter.bodies.mass_kg[range].iter().map(|&m| f64::from(m)).sum(),
+        fill_ratio: matter.fill_ratio[index],
+        com_m: rows.iter().map(|r| r[index].com_m).collect(),
+        low_m: column(|r| r.low_m),
+        high_m: column(|r| r.high_m),
+        speed_m_s: column(|r| r.speed_m_s),
+        mean_speed_m_s: column(|r| r.mean_speed_m_s),
+        volume_ratio: column(|r| r.volume_ratio),
+        stretch_max: column(|r| r.stretch_max),
+        spin_rad_s: rows.iter().map(|r| r[index].spin_rad_s).collect(),
+        kinetic_j: column(|r| r.kinetic_j),
+        spread_m: column(|r| r.spread_m),
+        gap_m: column(|r| r.gap_m),
+        impacts_s: Vec::new(),
+    };
+    metrics.impacts_s = metrics.impacts_s(lowest - facts.support_m, facts.height_m(), spec.time.fps);
+    metrics
+}
+
+fn expectation(metrics: &Metrics, text: &str) -> ExpectationResult {
+    match Condition::parse(text) {
+        Ok(condition) => {
+            let outcome = condition.evaluate(|object, metric| lookup(metrics, object, metric));
+            ExpectationResult { text: text.to_owned(), value: outcome.value, held: outcome.held }
+        }
+        // `Spec::validate` refuses such a condition before anything runs.
+        Err(_) => ExpectationResult { text: text.to_owned(), value: None, held: false },
+    }
+}

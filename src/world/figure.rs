@@ -1,0 +1,63 @@
+//! What is seen: Gaussians, the motion that moves them, their shadow, the renderer.
+
+use super::{Prepared, camera};
+use crate::gpu::{Gpu, GpuError, Recording};
+use crate::render::{GroundLook, Picture, RenderOptions, Renderer, View};
+use crate::skin::{Bound, Skinner, Splats};
+use crate::spec::{Camera, Weights};
+use glam::Vec3;
+
+/// A scene that can be posed by one frame of motion and drawn.
+#[derive(Debug)]
+pub struct Figure {
+    gpu: Gpu,
+    splats: Splats,
+    skinner: Skinner,
+    renderer: Renderer,
+    /// Motion of a frame that comes from the store.
+    replayed: wgpu::Buffer,
+    ground_m: f32,
+    has_static: bool,
+}
+
+impl Figure {
+    /// Uploads a scene and binds it to particles in the captured pose.
+    pub fn new(gpu: &Gpu, prepared: &Prepared, bound: &Bound, rest_m: &[Vec3], weights: Weights) -> Result<Figure, GpuError> {
+        let splats = Splats::new(gpu, &prepared.gaussians, prepared.world_from_sh, &prepared.object_of)?;
+        let skinner = Skinner::new(gpu, &splats, bound, rest_m, weights)?;
+        let has_static = prepared.object_of.contains(&u32::MAX);
+        Ok(Figure {
+            skinner,
+            renderer: Renderer::new(gpu),
+            replayed: gpu.storage::<[u32; 8]>("figure.replayed", rest_m.len())?,
+            ground_m: prepared.ground_m as f32,
+            has_static,
+            gpu: gpu.clone(),
+            splats,
+        })
+    }
+
+    /// Poses by what the solver's frame pass wrote.
+    pub fn pose(&mut self, motion: &wgpu::Buffer) {
+        let mut recording = Recording::default();
+        self.skinner.record(motion, &mut recording);
+        self.gpu.submit(&recording);
+    }
+
+    /// Poses by a frame of motion from the store.
+    pub fn pose_from(&mut self, motion: &[u8]) {
+        self.gpu.upload(&self.replayed, motion);
+        let motion = self.replayed.clone();
+        self.pose(&motion);
+    }
+
+    /// Starts drawing the pose; the picture can be waited for later.
+    pub fn draw(&mut self, camera: &Camera, time_s: f64, size: [u32; 2], background: [f32; 3]) -> Result<Picture, GpuError> {
+        let now = camera::orbited(camera, time_s);
+        let point = |p: [f64; 3]| Vec3::from(p.map(|v| v as f32));
+        let view = View::look_at(point(now.eye_m), point(now.target_m), now.fov_deg as f32, size).with_background(background);
+        // Static Gaussians are a ground of their own; a cut-out gets a plain one.
+        let ground = (!self.has_static).then_some(GroundLook { height_m: self.ground_m });
+        self.renderer.draw(&self.splats, &view, &RenderOptions { ground, ..RenderOptions::default() })
+    }
+}

@@ -1,0 +1,64 @@
+//! A spec in the solver's terms.
+
+use super::Resolved;
+use super::bodies::Matter;
+use crate::solver::{Collider, ObjectForce, PinRegion, Plane, Settings};
+use crate::spec::{BoxShape, ColliderShape, PlaneShape, Region, Spec, Until};
+use glam::Vec3;
+
+/// What surrounds the particles of a spec.
+pub fn settings(spec: &Spec, matter: &Matter, resolved: &Resolved) -> Settings {
+    let ground = spec.world.ground;
+    let object = |name: &str| spec.objects.iter().position(|o| o.name == name);
+    Settings {
+        gravity_m_s2: Vec3::from(spec.world.gravity_m_s2.map(|g| g as f32)),
+        ground: Some(Plane { height_m: resolved.ground_m as f32, friction: ground.friction as f32, restitution: ground.restitution as f32 }),
+        colliders: spec
+            .colliders
+            .iter()
+            .map(|c| Collider { shape: c.shape, friction: c.friction as f32, restitution: c.restitution as f32 })
+            .collect(),
+        pins: spec.pins.iter().filter_map(|p| Some(pin(p, matter, object(&p.object)?))).collect(),
+        forces: spec
+            .forces
+            .iter()
+            .filter_map(|f| {
+                let acceleration_m_s2 = Vec3::from(f.acceleration_m_s2.map(|a| a as f32));
+                Some(ObjectForce { object: object(&f.object)? as u32, from_s: f.from_s, to_s: end_s(f.to_s), acceleration_m_s2 })
+            })
+            .collect(),
+        frame_s: 1.0 / f64::from(spec.time.fps),
+        seed: spec.seed,
+        ..Settings::new(resolved.cell_m as f32)
+    }
+}
+
+fn end_s(until: Until) -> f64 {
+    match until {
+        Until::End => f64::INFINITY,
+        Until::Time(time_s) => time_s,
+    }
+}
+
+/// A region of an object as a shape within the object's captured bounds.
+fn pin(pin: &crate::spec::Pin, matter: &Matter, object: usize) -> PinRegion {
+    let points = &matter.particles.position_m[matter.bodies.ranges[object].clone()];
+    let low = points.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
+    let high = points.iter().copied().reduce(Vec3::max).unwrap_or(Vec3::ZERO);
+    let level = |share: f64| f64::from(low.z) + share * f64::from(high.z - low.z);
+    let slab = |from: f64, to: f64| {
+        let (low, high) = (low.as_dvec3(), high.as_dvec3());
+        // A little wider than the object, so that what lies on its faces is held too.
+        let margin = 0.01 * (high - low).max_element();
+        let size_m = [high.x - low.x + 2.0 * margin, high.y - low.y + 2.0 * margin, to - from + margin];
+        ColliderShape::Box(BoxShape { centre_m: [(low.x + high.x) / 2.0, (low.y + high.y) / 2.0, (from + to) / 2.0], size_m })
+    };
+    let shape = match pin.region {
+        Region::Above(share) => slab(level(share), f64::from(high.z)),
+        Region::Below(share) => slab(f64::from(low.z), level(share)),
+        Region::Box(shape) => ColliderShape::Box(shape),
+        Region::Sphere(shape) => ColliderShape::Sphere(shape),
+        Region::HalfSpace(PlaneShape { point_m, normal }) => ColliderShape::Plane(PlaneShape { point_m, normal }),
+    };
+    PinRegion { shape, low_m: low, high_m: high, from_s: pin.from_s, to_s: end_s(pin.to_s) }
+}
