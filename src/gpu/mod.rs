@@ -5,6 +5,7 @@
 //! listed, replayed and timed.
 
 mod buffers;
+mod calibrate;
 mod device;
 mod extent;
 mod kernel;
@@ -15,6 +16,7 @@ mod sort;
 mod twin;
 
 pub use buffers::Readback;
+pub use calibrate::Samples;
 pub use device::{DeviceRequest, Gpu, GpuError, Tier, list_adapters};
 pub use extent::{Blocks, Extent, ExtentPass, THREADS, fold};
 pub use kernel::{Access, Constant, Kernel, KernelSource};

@@ -5,6 +5,7 @@
 //! sort them stably by bin, find each bin's range, blend. No pass appends through an atomic, so equal
 //! depths fall in the Gaussians' own order and the same frame gives the same bits.
 
+mod bench;
 mod buffers;
 mod passes;
 mod picture;
@@ -17,6 +18,7 @@ mod view;
 #[cfg(test)]
 mod tests;
 
+pub use bench::{Bench, bench_render, bench_sort, bench_with};
 pub use passes::kernels;
 pub use picture::{Image, Picture};
 pub use profile::Profile;

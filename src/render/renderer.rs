@@ -79,11 +79,23 @@ impl Renderer {
     /// Submits one frame and starts its way back. The device goes on with what is submitted next.
     pub fn draw(&mut self, splats: &Splats, view: &View, options: &RenderOptions) -> Result<Picture, GpuError> {
         let frame = self.prepare(splats, view, options)?;
-        let mut recording = Recording::default();
-        frame.buffers.record_project(&self.gpu, &self.shared.passes, splats, &mut recording);
-        frame.record_picture(&self.gpu, &self.shared.passes, &mut recording);
-        self.gpu.submit(&recording);
+        self.gpu.submit(&frame.record(&self.gpu, &self.shared.passes, splats));
         Ok(Picture::start(&self.gpu, frame, self.shared.clone()))
+    }
+
+    /// One frame's passes as data, with room for all it draws, for benchmarks: to be submitted any
+    /// number of times.
+    pub fn recording(&self, splats: &Splats, view: &View, options: &RenderOptions) -> Result<Recording, GpuError> {
+        loop {
+            let frame = self.prepare(splats, view, options)?;
+            let recording = frame.record(&self.gpu, &self.shared.passes, splats);
+            self.gpu.submit(&recording);
+            let pairs: Vec<u32> = self.gpu.read(&frame.buffers.pairs.buffer, 2)?;
+            if pairs[0] == pairs[1] {
+                return Ok(recording);
+            }
+            self.shared.wants_pairs(pairs[1]);
+        }
     }
 
     /// Buffers that are large enough, and what the frame's passes need to know.
@@ -139,6 +151,14 @@ pub(super) struct Frame {
 }
 
 impl Frame {
+    /// All passes of the frame.
+    fn record(&self, gpu: &Gpu, passes: &Passes, splats: &Splats) -> Recording {
+        let mut recording = Recording::default();
+        self.buffers.record_project(gpu, passes, splats, &mut recording);
+        self.record_picture(gpu, passes, &mut recording);
+        recording
+    }
+
     /// The passes from the projected Gaussians to the picture.
     pub fn record_picture(&self, gpu: &Gpu, passes: &Passes, recording: &mut Recording) {
         self.buffers.record_picture(gpu, passes, &self.uniform, &self.planes, &self.object, recording);
