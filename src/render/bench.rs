@@ -25,6 +25,11 @@ pub fn bench_render(gpu: &Gpu, gaussians: usize, size: [u32; 2]) -> Result<Bench
 
 /// The same with a given form of the renderer.
 pub fn bench_with(gpu: &Gpu, renderer: &Renderer, gaussians: usize, size: [u32; 2]) -> Result<Bench, GpuError> {
+    finish(gpu, &bench_recording(gpu, renderer, gaussians, size)?)
+}
+
+/// The frame that is timed, as data.
+pub fn bench_recording(gpu: &Gpu, renderer: &Renderer, gaussians: usize, size: [u32; 2]) -> Result<Recording, GpuError> {
     let scene = random_scene(gaussians, 1);
     let splats = Splats::new(gpu, &scene, Quat::IDENTITY, &vec![0; gaussians])?;
     let focal = 0.5 * size[1] as f32 / 25f32.to_radians().tan();
@@ -38,8 +43,7 @@ pub fn bench_with(gpu: &Gpu, renderer: &Renderer, gaussians: usize, size: [u32; 
         world_to_camera: Mat4::from_translation(3.2 * Vec3::Z),
         background: [0.0; 3],
     };
-    let recording = renderer.recording(&splats, &view, &RenderOptions::default())?;
-    finish(gpu, &recording)
+    renderer.recording(&splats, &view, &RenderOptions::default())
 }
 
 /// Sorts `n` random pairs by all 32 bits.

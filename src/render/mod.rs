@@ -18,7 +18,7 @@ mod view;
 #[cfg(test)]
 mod tests;
 
-pub use bench::{Bench, bench_render, bench_sort, bench_with};
+pub use bench::{Bench, bench_recording, bench_render, bench_sort, bench_with};
 pub use passes::kernels;
 pub use picture::{Image, Picture};
 pub use profile::Profile;

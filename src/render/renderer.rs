@@ -63,10 +63,8 @@ impl Renderer {
     pub fn new(gpu: &Gpu) -> Renderer {
         let limits = gpu.device.limits();
         let wide = limits.max_compute_invocations_per_workgroup >= 512 && limits.max_compute_workgroup_size_x >= 512;
-        let bin = match gpu.tier {
-            Tier::Gpu if !wide => 16,
-            _ => 32,
-        };
+        // Small bins where each pair is dear to blend, large ones where it is dear to sort.
+        let bin = if gpu.tier == Tier::Gpu && wide { 32 } else { 16 };
         Renderer::with_form(gpu, gpu.tier, bin)
     }
 
