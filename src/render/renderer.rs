@@ -44,7 +44,7 @@ pub struct GroundLook {
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
-    shared: Arc<Shared>,
+    pub(super) shared: Arc<Shared>,
 }
 
 /// What the renderer and its pictures on their way back have in common.
@@ -150,7 +150,7 @@ pub(super) struct Frame {
 
 impl Frame {
     /// All passes of the frame.
-    fn record(&self, gpu: &Gpu, passes: &Passes, splats: &Splats) -> Recording {
+    pub fn record(&self, gpu: &Gpu, passes: &Passes, splats: &Splats) -> Recording {
         let mut recording = Recording::default();
         self.buffers.record_project(gpu, passes, splats, &mut recording);
         self.record_picture(gpu, passes, &mut recording);

@@ -5,3 +5,5 @@ mod behaviour;
 mod other_programs;
 mod reference;
 mod scenes;
+mod text;
+mod twin;
