@@ -4,6 +4,7 @@
 
 mod cli;
 mod history;
+mod language;
 
 use std::process::ExitCode;
 

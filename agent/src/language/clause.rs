@@ -1,0 +1,339 @@
+//! Phrases to clauses: one clause asks for one thing. Whoever understands a phrase takes it; what nobody took is
+//! reported.
+
+use super::lexicon::{Direction, Form, Preposition, Property, Sense, Verb};
+use super::numbers::{Dimension, Quantity};
+use super::phrases::Phrase;
+use std::ops::Range;
+
+/// One clause of a request.
+#[derive(Debug, Default)]
+pub struct Clause {
+    phrases: Vec<Phrase>,
+    taken: Vec<bool>,
+}
+
+impl Clause {
+    fn new(phrases: Vec<Phrase>) -> Clause {
+        Clause { taken: vec![false; phrases.len()], phrases }
+    }
+
+    /// All phrases, taken or not.
+    pub fn phrases(&self) -> &[Phrase] {
+        &self.phrases
+    }
+
+    /// Takes the first phrase that `pick` accepts.
+    pub fn take<T>(&mut self, pick: impl Fn(&Sense) -> Option<T>) -> Option<T> {
+        let found = (0..self.phrases.len()).filter(|i| !self.taken[*i]).find_map(|i| pick(&self.phrases[i].sense).map(|value| (i, value)));
+        found.map(|(i, value)| {
+            self.taken[i] = true;
+            value
+        })
+    }
+
+    /// Takes every phrase that `pick` accepts.
+    pub fn take_all<T>(&mut self, pick: impl Fn(&Sense) -> Option<T>) -> Vec<T> {
+        std::iter::from_fn(|| self.take(&pick)).collect()
+    }
+
+    /// Takes every phrase of one meaning; whether there was one.
+    pub fn take_sense(&mut self, sense: &Sense) -> bool {
+        !self.take_all(|s| (s == sense).then_some(())).is_empty()
+    }
+
+    /// Whether a phrase that nobody took yet has such a meaning.
+    pub fn has(&self, pick: impl Fn(&Sense) -> bool) -> bool {
+        self.left().any(|p| pick(&p.sense))
+    }
+
+    /// Phrases that nobody took yet.
+    pub fn left(&self) -> impl Iterator<Item = &Phrase> {
+        self.phrases.iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(phrase, _)| phrase)
+    }
+
+    /// Whether anybody took something.
+    pub fn took_something(&self) -> bool {
+        self.taken.iter().any(|t| *t)
+    }
+
+    /// Tokens of phrases that carry meaning and that nobody took.
+    pub fn not_understood(&self) -> Vec<Range<usize>> {
+        let silent = |sense: &Sense| {
+            matches!(
+                sense,
+                Sense::Objects(_)
+                    | Sense::It
+                    | Sense::All
+                    | Sense::Article
+                    | Sense::As
+                    | Sense::Preposition(_)
+                    | Sense::Filler
+                    | Sense::Separator
+                    | Sense::Ground
+            )
+        };
+        self.left().filter(|p| !silent(&p.sense)).map(|p| p.span.clone()).collect()
+    }
+
+    /// Takes back everything but what no reader could have understood: the clause is refused for a reason of its own.
+    pub fn refuse(&mut self) {
+        for (phrase, taken) in self.phrases.iter().zip(&mut self.taken) {
+            *taken = !matches!(phrase.sense, Sense::Unknown | Sense::Unbuilt(_) | Sense::Condition | Sense::Negation | Sense::Question);
+        }
+    }
+
+    /// Takes the first verb that `pick` accepts.
+    pub fn take_verb(&mut self, pick: impl Fn(Verb) -> bool) -> Option<Verb> {
+        self.take(|s| match s {
+            Sense::Verb(verb) if pick(*verb) => Some(*verb),
+            _ => None,
+        })
+    }
+
+    /// Takes all directions.
+    pub fn take_directions(&mut self) -> Vec<Direction> {
+        self.take_all(|s| match s {
+            Sense::Direction(direction) => Some(*direction),
+            _ => None,
+        })
+    }
+
+    /// Takes a number of a dimension, with its preposition.
+    pub fn take_measure(&mut self, dimension: Dimension) -> Option<(f64, Option<Preposition>)> {
+        self.take(|s| match s {
+            Sense::Measure(Quantity { value, dimension: d }, lead) if *d == dimension => Some((*value, *lead)),
+            _ => None,
+        })
+    }
+
+    /// Takes a number of a dimension, or one without a unit that no preposition ties to a time.
+    pub fn take_measure_or_plain(&mut self, dimension: Dimension) -> Option<(f64, Option<Preposition>)> {
+        self.take_measure(dimension).or_else(|| {
+            self.take(|s| match s {
+                Sense::Measure(Quantity { value, dimension: Dimension::Plain }, lead)
+                    if matches!(lead, None | Some(Preposition::By | Preposition::From | Preposition::To | Preposition::Of | Preposition::With)) =>
+                {
+                    Some((*value, *lead))
+                }
+                _ => None,
+            })
+        })
+    }
+
+    /// Takes "at 0.5 s".
+    pub fn take_at(&mut self) -> Option<f64> {
+        self.take(|s| match s {
+            Sense::At(time) => Some(*time),
+            _ => None,
+        })
+    }
+
+    /// Takes "for 2 s".
+    pub fn take_for(&mut self) -> Option<f64> {
+        self.take(|s| match s {
+            Sense::For(time) => Some(*time),
+            _ => None,
+        })
+    }
+
+    /// Takes "until 2 s".
+    pub fn take_until(&mut self) -> Option<f64> {
+        self.take(|s| match s {
+            Sense::Until(time) => Some(*time),
+            _ => None,
+        })
+    }
+
+    /// Takes how much more or less of one of `properties` is asked for, with the words that say how much.
+    pub fn take_scale(&mut self, properties: &[Property]) -> Option<Scale> {
+        let (property, mut sign, form) = self.take(|s| match s {
+            Sense::Quality(property, sign, form) if properties.contains(property) => Some((*property, *sign, Some(*form))),
+            Sense::Property(property) if properties.contains(property) => Some((*property, 1.0, None)),
+            _ => None,
+        })?;
+        let mut compared = form == Some(Form::Comparative);
+        if let Some(change) = self.take(|s| match s {
+            Sense::Change(change) => Some(*change),
+            _ => None,
+        }) {
+            sign *= change;
+            compared = true;
+        } else if form.is_none()
+            && let Some(change) = self.take(|s| match s {
+                // "higher gravity", "a strong gravity", "lower stiffness"
+                Sense::Quality(Property::Height | Property::Strength | Property::Size, change, _) => Some(*change),
+                _ => None,
+            })
+        {
+            sign *= change;
+            compared = true;
+        }
+        let factor = self.take(|s| match s {
+            Sense::Factor(factor) => Some(*factor),
+            _ => None,
+        });
+        let percent = self.take_measure(Dimension::Percent);
+        let as_much = self.take_sense(&Sense::As);
+        let degrees = self.take_all(|s| match s {
+            Sense::Degree(degree) => Some(*degree),
+            _ => None,
+        });
+        let degree = if degrees.is_empty() { 1.0 } else { degrees.iter().product() };
+        let asked = compared || form.is_some() || factor.is_some() || percent.is_some();
+        let ratio = match (factor, percent) {
+            (Some(factor), _) if compared && factor < 1.0 => 1.0 + sign * factor,
+            (Some(factor), _) => factor.powf(sign),
+            (None, Some((percent, lead))) if as_much || lead == Some(Preposition::To) || !compared => (percent / 100.0).powf(sign),
+            (None, Some((percent, _))) => 1.0 + sign * percent / 100.0,
+            (None, None) => step(property).powf(sign * degree),
+        };
+        Some(Scale { property, ratio, sign, compared, asked })
+    }
+
+    /// Takes adverbs of strength: 0 where there are none, 1 for "hard", 2 for "very hard", -1 for "gently".
+    pub fn take_strength(&mut self) -> f64 {
+        let strengths = self.take_all(|s| match s {
+            Sense::Strength(strength) => Some(*strength),
+            _ => None,
+        });
+        if strengths.is_empty() {
+            return 0.0;
+        }
+        let degrees = self.take_all(|s| match s {
+            Sense::Degree(degree) => Some(*degree),
+            _ => None,
+        });
+        strengths.iter().sum::<f64>() * degrees.iter().product::<f64>()
+    }
+
+    /// Whether the clause, standing alone, asks for something.
+    fn has_head(&self) -> bool {
+        self.phrases.iter().any(|p| match &p.sense {
+            Sense::Verb(_)
+            | Sense::Quality(..)
+            | Sense::Property(_)
+            | Sense::Material(_)
+            | Sense::Unbuilt(_)
+            | Sense::Gravity(_)
+            | Sense::Surface(_)
+            | Sense::View(_)
+            | Sense::Pose(_)
+            | Sense::Turn(_)
+            | Sense::Change(_)
+            | Sense::Condition
+            | Sense::Question
+            | Sense::Camera
+            | Sense::For(_)
+            | Sense::Negation => true,
+            Sense::Measure(quantity, _) => matches!(quantity.dimension, Dimension::Pressure | Dimension::Density | Dimension::FrameRate),
+            _ => false,
+        })
+    }
+
+    /// Whether all that the clause asks for is how a verb is to be done: "and hard".
+    fn only_qualifies(&self, verb: Verb) -> bool {
+        self.phrases.iter().all(|p| match &p.sense {
+            Sense::Quality(property, _, _) => qualifies(verb).contains(property),
+            Sense::Degree(_) | Sense::Strength(_) | Sense::Filler | Sense::Article | Sense::As | Sense::Factor(_) => true,
+            _ => false,
+        })
+    }
+
+    fn starts_with_condition(&self) -> bool {
+        self.phrases.iter().find(|p| p.sense != Sense::Filler).is_some_and(|p| p.sense == Sense::Condition)
+    }
+
+    fn last_verb(&self) -> Option<Verb> {
+        self.phrases.iter().rev().find_map(|p| match p.sense {
+            Sense::Verb(verb) => Some(verb),
+            _ => None,
+        })
+    }
+
+    /// The verb that a following stretch without one repeats: one that gives another amount or time beside another direction.
+    fn repeated_verb(&self, next: &Clause) -> Option<Phrase> {
+        let kind = |sense: &Sense| match sense {
+            Sense::Measure(quantity, _) => Some(Some(quantity.dimension)),
+            Sense::At(_) => Some(None),
+            _ => None,
+        };
+        let directed = |clause: &Clause| clause.phrases.iter().any(|p| matches!(p.sense, Sense::Direction(_)));
+        let both = next.phrases.iter().filter_map(|p| kind(&p.sense)).any(|k| self.phrases.iter().any(|p| kind(&p.sense) == Some(k)));
+        let verb = self.phrases.iter().rev().find(|p| matches!(p.sense, Sense::Verb(_)))?;
+        (both && directed(self) && directed(next)).then(|| verb.clone())
+    }
+
+    fn append(&mut self, other: Clause) {
+        self.phrases.extend(other.phrases);
+        self.taken = vec![false; self.phrases.len()];
+    }
+}
+
+/// How much more or less of a property.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// Of what.
+    pub property: Property,
+    /// New value over the old one.
+    pub ratio: f64,
+    /// Which way the word goes.
+    pub sign: f64,
+    /// "softer", "less stiff", not "soft".
+    pub compared: bool,
+    /// Whether a change was asked for at all; false for a property that is only named.
+    pub asked: bool,
+}
+
+/// What a comparative alone multiplies by: "softer" halves, "higher" is half as high again.
+pub fn step(property: Property) -> f64 {
+    match property {
+        Property::Stiffness | Property::Hardness | Property::Density | Property::Friction | Property::Gravity | Property::Bounce => 2.0,
+        Property::Height | Property::Speed | Property::Strength | Property::Size | Property::Duration | Property::Distance => 1.5,
+        Property::FieldOfView | Property::FrameRate | Property::Poisson => 1.25,
+    }
+}
+
+/// The adjectives that say how a verb is done.
+pub fn qualifies(verb: Verb) -> &'static [Property] {
+    match verb {
+        Verb::Jump | Verb::Somersault => &[Property::Height, Property::Strength, Property::Hardness, Property::Size, Property::Speed],
+        Verb::Fall | Verb::Lift => &[Property::Height, Property::Size],
+        Verb::Push(_) | Verb::Pull | Verb::Blow => &[Property::Strength, Property::Hardness, Property::Speed, Property::Size],
+        Verb::Throw => &[Property::Strength, Property::Hardness, Property::Speed, Property::Height, Property::Distance, Property::Size],
+        Verb::Spin | Verb::Roll => &[Property::Speed, Property::Strength, Property::Hardness],
+        Verb::Zoom(_) | Verb::Look | Verb::Orbit => &[Property::Distance, Property::FieldOfView, Property::Speed],
+        _ => &[],
+    }
+}
+
+/// Splits phrases into clauses. A stretch between separators that asks for nothing by itself belongs to the clause
+/// before it ("up and to the left"), or to the next one where it is the first ("after a second, push it").
+pub fn split(phrases: Vec<Phrase>) -> Vec<Clause> {
+    let mut clauses: Vec<Clause> = Vec::new();
+    let mut pending: Option<Clause> = None;
+    for segment in phrases.split(|p| p.sense == Sense::Separator).filter(|s| !s.is_empty()) {
+        let mut clause = Clause::new(segment.to_vec());
+        let belongs = !clause.has_head()
+            || clause.starts_with_condition()
+            || clauses.last().and_then(Clause::last_verb).is_some_and(|verb| clause.only_qualifies(verb));
+        if let Some(mut before) = pending.take() {
+            before.append(clause);
+            clause = before;
+        } else if belongs && let Some(last) = clauses.last_mut() {
+            match last.repeated_verb(&clause) {
+                // "push it left at 0.5 s and right at 1 s": the verb is said once for both.
+                Some(verb) => clauses.push(Clause::new([vec![verb], clause.phrases].concat())),
+                None => last.append(clause),
+            }
+            continue;
+        }
+        if belongs && clauses.is_empty() {
+            pending = Some(clause);
+        } else {
+            clauses.push(clause);
+        }
+    }
+    clauses.extend(pending);
+    clauses
+}

@@ -1,0 +1,165 @@
+//! Holding and letting go, stopping and taking back: pins, "no spin", "stop it at 1 s".
+
+use super::super::clause::Clause;
+use super::super::draft::{Draft, Refusal};
+use super::super::lexicon::{Part, Pose, Sense, Verb};
+use super::super::numbers::Dimension;
+use super::super::say;
+use phystalk::spec::{Event, Pin, Region, Until};
+
+/// "hold the base", "pin the top from 0.2 s to 1 s".
+pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    let objects = draft.subjects(clause)?;
+    let part = take_part(clause);
+    clause.take_sense(&Sense::Ground);
+    clause.take_directions();
+    let span = clause.take(|s| match s {
+        Sense::Span(from, to) => Some((*from, *to)),
+        _ => None,
+    });
+    let from_s = span.map(|s| s.0).or_else(|| clause.take_at()).unwrap_or(0.0);
+    let until = span.map(|s| s.1).or_else(|| clause.take_until()).or_else(|| clause.take_for().map(|f| from_s + f));
+    let to_s = until.map_or(Until::End, |to| Until::Time(say::tidy(to)));
+    let (stem, region, said) = match part {
+        Some(Part::Base) => ("base", Region::Below(0.05), "the lowest twentieth"),
+        Some(Part::Top) => ("top", Region::Above(0.95), "the highest twentieth"),
+        Some(Part::LowerHalf) => ("lower-half", Region::Below(0.5), "the lower half"),
+        Some(Part::UpperHalf) => ("upper-half", Region::Above(0.5), "the upper half"),
+        Some(Part::LowerThird) => ("lower-third", Region::Below(0.333333), "the lowest third"),
+        Some(Part::UpperThird) => ("upper-third", Region::Above(0.666667), "the highest third"),
+        None => ("hold", Region::Above(0.0), "all"),
+    };
+    for &object in &objects {
+        let object = draft.name(object);
+        let same = draft.spec.pins.iter_mut().find(|p| p.object == object && p.region == region);
+        match same {
+            Some(pin) => (pin.from_s, pin.to_s) = (from_s, to_s),
+            None => {
+                let taken = |name: &str| draft.spec.pins.iter().any(|p| p.name == name);
+                let name = if taken(stem) { draft.free_name(stem, |spec, name| spec.pins.iter().any(|p| p.name == name)) } else { stem.to_owned() };
+                draft.spec.pins.push(Pin { name, object: object.clone(), region, from_s, to_s });
+            }
+        }
+        let until = until.map_or("to the end".to_owned(), |to| format!("to {}", say::seconds(to)));
+        draft.gloss.push(format!("{said} of {object} is held from {} {until}", say::seconds(from_s)));
+    }
+    Ok(())
+}
+
+/// "let go at 1 s", "let go".
+pub fn release(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    let objects = draft.subjects(clause)?;
+    take_part(clause);
+    let at_s = clause.take_at();
+    for &object in &objects {
+        let object = draft.name(object);
+        if !draft.spec.pins.iter().any(|p| p.object == object) {
+            return Err(format!("nothing holds {object}: \"hold the base\" does"));
+        }
+        match at_s {
+            Some(at) => {
+                for pin in draft.spec.pins.iter_mut().filter(|p| p.object == object && p.from_s < at) {
+                    pin.to_s = Until::Time(say::tidy(at));
+                }
+                draft.gloss.push(format!("{object} is let go at {}", say::seconds(at)));
+            }
+            None => {
+                draft.spec.pins.retain(|p| p.object != object);
+                draft.gloss.push(format!("nothing holds {object} any more"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn take_part(clause: &mut Clause) -> Option<Part> {
+    clause.take(|s| match s {
+        Sense::Part(part) => Some(*part),
+        _ => None,
+    })
+}
+
+/// "stop spinning", "no jump", "don't push it", "remove the wind", "stop it at 1 s", "stand still". The word that
+/// denies is taken already.
+pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    let verb = clause.take_verb(|v| !matches!(v, Verb::Stop));
+    if let Some(Verb::Orbit | Verb::Look | Verb::Zoom(_)) = verb {
+        let mut camera = draft.camera();
+        camera.orbit_deg_s = 0.0;
+        draft.spec.camera = phystalk::spec::Auto::Value(camera);
+        draft.gloss.push("the camera stands still".to_owned());
+        return Ok(());
+    }
+    let objects = draft.subjects(clause)?;
+    clause.take_directions();
+    let at_s = clause.take_at();
+    for &object in &objects {
+        let name = draft.name(object);
+        let said = match verb {
+            Some(Verb::Jump | Verb::Throw | Verb::Somersault) => {
+                draft.object(object).velocity_m_s[2] = 0.0;
+                draft.spec.events.retain(|e| e.object != name || !(e.name.starts_with("jump") || e.name.starts_with("throw")));
+                "does not jump"
+            }
+            Some(Verb::Push(_) | Verb::Move) => {
+                let up = draft.spec.objects[object].velocity_m_s[2];
+                draft.object(object).velocity_m_s = [0.0, 0.0, up];
+                draft.spec.events.retain(|e| e.object != name || !e.name.starts_with("push"));
+                "is not pushed"
+            }
+            Some(Verb::Pull | Verb::Blow) => {
+                let stem = if verb == Some(Verb::Blow) { "wind" } else { "" };
+                draft.spec.forces.retain(|f| f.object != name || !f.name.starts_with(stem));
+                "is pulled by nothing"
+            }
+            Some(Verb::Spin | Verb::Roll) => {
+                draft.object(object).spin_rad_s = [0.0; 3];
+                "does not spin"
+            }
+            Some(Verb::Turn | Verb::Tilt) => {
+                draft.object(object).rotate_deg = [0.0; 3];
+                "is not turned"
+            }
+            Some(Verb::Fall | Verb::Lift) => {
+                draft.set_gap_m(object, 0.0);
+                "starts on what is below it"
+            }
+            Some(Verb::Pin) => {
+                draft.spec.pins.retain(|p| p.object != name);
+                "is held by nothing"
+            }
+            _ if at_s.is_some() => {
+                let at_s = say::tidy(at_s.unwrap_or_default());
+                let event = draft.free_name("stop", |spec, name| spec.events.iter().any(|e| e.name == name));
+                draft.spec.events.push(Event { name: event, at_s, object: name.clone(), push_m_s: None, velocity_m_s: Some([0.0; 3]) });
+                "is stopped there"
+            }
+            None | Some(Verb::Rest) => {
+                rest(draft, object);
+                "stands still"
+            }
+            Some(_) => return Err("that cannot be stopped".to_owned()),
+        };
+        let at = at_s.map_or(String::new(), |at| format!(" at {}", say::seconds(at)));
+        draft.gloss.push(format!("{name} {said}{at}"));
+    }
+    Ok(())
+}
+
+/// No speed, no spin, no pushes, no pulls.
+fn rest(draft: &mut Draft, object: usize) {
+    let name = draft.name(object);
+    let thing = draft.object(object);
+    (thing.velocity_m_s, thing.spin_rad_s) = ([0.0; 3], [0.0; 3]);
+    draft.spec.events.retain(|e| e.object != name);
+    draft.spec.forces.retain(|f| f.object != name);
+}
+
+/// Whether a denial in this clause has something that it can deny: "don't spin", "no wind".
+pub fn can_deny(clause: &Clause) -> bool {
+    let mut senses = clause.left().map(|p| &p.sense).filter(|s| **s != Sense::Filler);
+    let after = senses.by_ref().skip_while(|s| **s != Sense::Negation).nth(1);
+    matches!(after, Some(Sense::Verb(_)))
+        && !clause.has(|s| matches!(s, Sense::Quality(..) | Sense::Strength(_) | Sense::Degree(_) | Sense::Pose(Pose::UpsideDown)))
+        && !clause.has(|s| matches!(s, Sense::Measure(q, _) if q.dimension != Dimension::Time))
+}

@@ -1,0 +1,154 @@
+//! One clause, understood: which families of verbs and adjectives read it, and in which order.
+
+pub mod adjust;
+pub mod camera;
+pub mod hold;
+pub mod motion;
+pub mod place;
+pub mod turns;
+pub mod world;
+
+use super::clause::Clause;
+use super::draft::{Draft, Refusal};
+use super::lexicon::{Sense, Unbuilt, Verb};
+use super::tokens::Token;
+
+/// Understands one clause. What it changed stands in the draft; what it did not take is left in the clause.
+pub fn understand(clause: &mut Clause, draft: &mut Draft, tokens: &[Token]) -> Result<(), Refusal> {
+    refuse_unbuilt(clause, draft, tokens)?;
+    if clause.has(|s| *s == Sense::Condition) {
+        return Err("conditions are not built yet: give a time, as in \"at 0.5 s\"".to_owned());
+    }
+    if turns::understand(clause, draft)? {
+        return Ok(());
+    }
+    world::understand(clause, draft);
+    if denied(clause)? {
+        return hold::cancel(clause, draft);
+    }
+    if world::turn_gravity(clause, draft) {
+        return Ok(());
+    }
+    if camera::is_about_camera(clause) {
+        return camera::understand(clause, draft);
+    }
+    let material = clause.take(|s| match s {
+        Sense::Material(name) => Some(*name),
+        _ => None,
+    });
+    // A pose first: a drop goes by the lowest point of the turned thing.
+    let pose = clause.take(|s| match s {
+        Sense::Pose(pose) => Some(*pose),
+        _ => None,
+    });
+    if let Some(pose) = pose {
+        place::pose(pose, clause, draft)?;
+    }
+    if let Some(name) = material {
+        adjust::material(name, clause, draft)?;
+    }
+    verbs(clause, draft)?;
+    if !place::take_rise(clause, draft)? {
+        adjust::understand(clause, draft)?;
+    }
+    world::time(clause, draft)?;
+    if clause.has(|s| matches!(s, Sense::View(_))) {
+        camera::understand(clause, draft)?;
+    }
+    if clause.has(|s| matches!(s, Sense::Direction(_)))
+        && !clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(_)))
+        && !turns::aim(clause, draft)?
+    {
+        return Err("which motion goes that way? \"push it to the left\"".to_owned());
+    }
+    Ok(())
+}
+
+/// The verbs, in their order.
+fn verbs(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    while let Some(verb) = next_verb(clause) {
+        match verb {
+            light if adjust::is_light(light, clause) => {}
+            Verb::Fall if place::falls_by_itself(clause, draft) => {}
+            Verb::Fall => place::drop(clause, draft)?,
+            Verb::Lift => place::lift(clause, draft)?,
+            Verb::Move => place::shift(clause, draft)?,
+            Verb::Turn | Verb::Tilt => place::turn(verb, clause, draft)?,
+            Verb::Reset => place::reset(clause, draft)?,
+            Verb::Pin => hold::pin(clause, draft)?,
+            Verb::Release => hold::release(clause, draft)?,
+            Verb::Rest | Verb::Stop => hold::cancel(clause, draft)?,
+            _ => motion::understand(verb, clause, draft)?,
+        }
+    }
+    Ok(())
+}
+
+/// The next verb that is not about time or the camera.
+fn next_verb(clause: &mut Clause) -> Option<Verb> {
+    clause.take_verb(|v| !matches!(v, Verb::Run | Verb::Look | Verb::Zoom(_) | Verb::Orbit))
+}
+
+/// Whether the clause denies something: "don't spin", "stop the wind". A denial of anything else is refused, so that
+/// nobody gets the opposite of what was said.
+fn denied(clause: &mut Clause) -> Result<bool, Refusal> {
+    if clause.has(|s| *s == Sense::Negation) {
+        let first = clause.left().find(|p| p.sense != Sense::Filler).map(|p| p.sense.clone());
+        if hold::can_deny(clause) && (first == Some(Sense::Negation) || clause.left().filter(|p| matches!(p.sense, Sense::Verb(_))).count() == 1) {
+            clause.take_sense(&Sense::Negation);
+            return Ok(true);
+        }
+        return Err("a denial that is not understood: \"don't spin\", \"no jump\", \"undo\" are".to_owned());
+    }
+    let stops = clause.has(|s| matches!(s, Sense::Verb(Verb::Stop)));
+    if stops {
+        clause.take_verb(|v| v == Verb::Stop);
+    }
+    Ok(stops || clause.has(|s| matches!(s, Sense::Verb(Verb::Rest))))
+}
+
+/// Refuses by name what later versions build. A word that only describes an object that is named ("the wooden vase") is
+/// reported, and the rest of the clause holds.
+fn refuse_unbuilt(clause: &mut Clause, draft: &mut Draft, tokens: &[Token]) -> Result<(), Refusal> {
+    let unbuilt: Vec<(Unbuilt, String, bool)> = clause
+        .phrases()
+        .iter()
+        .enumerate()
+        .filter_map(|(i, phrase)| match phrase.sense {
+            Sense::Unbuilt(what) => {
+                let words: Vec<&str> = tokens[phrase.span.clone()].iter().map(|t| t.text.as_str()).collect();
+                let describes = matches!(clause.phrases().get(i + 1).map(|p| &p.sense), Some(Sense::Objects(_)));
+                Some((what, words.join(" "), describes))
+            }
+            _ => None,
+        })
+        .collect();
+    for (what, words, describes) in unbuilt {
+        let reason = refusal(what, &words);
+        if !describes {
+            return Err(reason);
+        }
+        draft.refusals.push(reason);
+    }
+    Ok(())
+}
+
+/// Why something is not there yet, and what is.
+pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
+    let names: Vec<String> = phystalk::spec::presets::ELASTIC.iter().map(|p| p.name.to_owned()).collect();
+    let elastic = format!("elastic ones are: {}", names.join(", "));
+    match what {
+        Unbuilt::Liquid => format!("{words} is a liquid: liquids are not built yet; {elastic}"),
+        Unbuilt::Rigid => format!("{words} is rigid: rigid bodies are not built yet; {elastic}, and \"much stiffer\" comes near"),
+        Unbuilt::Plastic => format!("{words} is plastic: plastic materials are not built yet; {elastic}"),
+        Unbuilt::Viscoplastic => format!("{words} is viscoplastic: viscoplastic materials are not built yet; {elastic}"),
+        Unbuilt::Grains => format!("{words} is granular: sand and snow are not built yet; {elastic}"),
+        Unbuilt::Gas => format!("{words} is a gas: gases are not built; {elastic}"),
+        Unbuilt::Muscle => format!("{words}: things that move themselves are not built yet; jumps, pushes, throws and spins are"),
+        Unbuilt::Heat => format!("{words}: heat is not built yet; {elastic}"),
+        Unbuilt::Fracture => format!("{words}: breaking is not built yet; {elastic}"),
+        Unbuilt::Look => format!("{words}: colours and light are not built yet; motion, material, world and camera are"),
+        Unbuilt::Scene => format!("{words}: changing the size or number of things is not built yet"),
+        Unbuilt::Playback => format!("{words}: playback is not part of a simulation; \"at 200 fps\" gives more frames a second"),
+    }
+}

@@ -1,0 +1,191 @@
+//! What speaks of the newest turn: "no, the other way", "again", "more", "a bit less", "to the right, rather".
+
+use super::super::clause::Clause;
+use super::super::draft::{Draft, Refusal};
+use super::super::lexicon::{Sense, TurnWord};
+use super::super::say;
+use glam::DVec3;
+use phystalk::spec::{Auto, Object, Spec};
+
+const NOTHING: &str = "there is no turn before this one that it could speak of";
+
+/// How the newest turn's change is to be continued.
+#[derive(Clone, Copy)]
+enum Follow {
+    /// Its opposite instead.
+    Opposite,
+    /// The same share on top: exponent of the ratio, multiple of a difference.
+    On(f64),
+}
+
+/// Reads a word about the newest turn; whether there was one.
+pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
+    if clause.take_sense(&Sense::Turn(TurnWord::OtherWay)) {
+        // "push it the other way": the verb repeats what is turned round.
+        clause.take_all(|s| matches!(s, Sense::Verb(_) | Sense::Negation).then_some(()));
+        return follow(draft, Follow::Opposite).map(|()| true);
+    }
+    let alone = !clause.has(|s| matches!(s, Sense::Verb(_) | Sense::Quality(..) | Sense::Property(_) | Sense::Gravity(_) | Sense::Material(_)));
+    if clause.take_sense(&Sense::Turn(TurnWord::Again)) {
+        // "jump again", "again but softer": the word adds nothing to what is asked beside it.
+        if !alone || draft.context.previous_spec.is_none() {
+            return if alone { Err(NOTHING.to_owned()) } else { Ok(false) };
+        }
+        return follow(draft, Follow::On(1.0)).map(|()| true);
+    }
+    if !alone {
+        return Ok(false);
+    }
+    let change = clause.take(|s| match s {
+        Sense::Change(change) => Some(*change),
+        _ => None,
+    });
+    let Some(change) = change else { return Ok(false) };
+    let degrees = clause.take_all(|s| match s {
+        Sense::Degree(degree) => Some(*degree),
+        _ => None,
+    });
+    let share = degrees.iter().product::<f64>() * if change > 0.0 { 1.0 } else { -0.5 };
+    follow(draft, Follow::On(share)).map(|()| true)
+}
+
+/// Continues, value by value, what led from the spec before the newest turn to the present one.
+fn follow(draft: &mut Draft, how: Follow) -> Result<(), Refusal> {
+    let before: &Spec = draft.context.previous_spec.ok_or(NOTHING)?;
+    let now: &Spec = draft.context.spec;
+    let mut said = Vec::new();
+    for index in 0..now.objects.len() {
+        if let Some(was) = before.objects.iter().find(|o| o.name == now.objects[index].name) {
+            object(draft, index, &was.clone(), how, &mut said);
+        }
+    }
+    for (i, event) in now.events.iter().enumerate() {
+        let changed = before.events.iter().find(|e| e.name == event.name) != Some(event);
+        if changed && let Some(push) = event.push_m_s {
+            draft.spec.events[i].push_m_s = Some(along(DVec3::ZERO, DVec3::from_array(push), how, true));
+            said.push(format!("{} of {}", event.name, event.object));
+        }
+    }
+    for (i, force) in now.forces.iter().enumerate() {
+        if before.forces.iter().find(|f| f.name == force.name) != Some(force) {
+            draft.spec.forces[i].acceleration_m_s2 = along(DVec3::ZERO, DVec3::from_array(force.acceleration_m_s2), how, true);
+            said.push(format!("{} of {}", force.name, force.object));
+        }
+    }
+    let (was, is) = (before.world.ground, now.world.ground);
+    scalar((was.friction, is.friction), how, &mut draft.spec.world.ground.friction, |v| format!("friction {}", say::short(v)), &mut said);
+    let (was, is) = (DVec3::from_array(before.world.gravity_m_s2).length(), DVec3::from_array(now.world.gravity_m_s2).length());
+    let mut strength = is;
+    scalar((was, is), how, &mut strength, |v| format!("gravity {}", say::acceleration(v)), &mut said);
+    if strength != is {
+        super::world::set_gravity(draft, strength);
+    }
+    if let (Auto::Value(was), Auto::Value(is)) = (before.time.duration_s, now.time.duration_s) {
+        let mut duration = is;
+        scalar((was, is), how, &mut duration, |v| format!("it lasts {}", say::seconds(v)), &mut said);
+        draft.spec.time.duration_s = Auto::Value(duration);
+    }
+    if said.is_empty() {
+        return Err("the newest turn changed nothing that has another way or a more and less".to_owned());
+    }
+    let words = match how {
+        Follow::Opposite => "the other way",
+        Follow::On(share) if share > 0.0 => "more of it",
+        Follow::On(_) => "less of it",
+    };
+    draft.gloss.push(format!("{words}: {}", say::list(&said)));
+    Ok(())
+}
+
+fn object(draft: &mut Draft, index: usize, was: &Object, how: Follow, said: &mut Vec<String>) {
+    let now = draft.context.spec.objects[index].clone();
+    let name = now.name.clone();
+    let mut vector = |was: [f64; 3], is: [f64; 3], rate: bool, what: &str| -> [f64; 3] {
+        if was == is {
+            return is;
+        }
+        let after = along(DVec3::from_array(was), DVec3::from_array(is), how, rate);
+        said.push(format!("{what} of {name} ({}, {}, {})", say::short(after[0]), say::short(after[1]), say::short(after[2])));
+        after
+    };
+    let velocity = vector(was.velocity_m_s, now.velocity_m_s, true, "velocity");
+    let spin = vector(was.spin_rad_s, now.spin_rad_s, true, "spin");
+    let offset = vector(was.offset_m, now.offset_m, false, "offset");
+    let rotate = vector(was.rotate_deg, now.rotate_deg, false, "rotation");
+    let thing = draft.object(index);
+    (thing.velocity_m_s, thing.spin_rad_s, thing.offset_m, thing.rotate_deg) = (velocity, spin, offset, rotate);
+    let path = format!("object.{name}.material.young_pa");
+    let phystalk::spec::Material::Elastic(elastic_was) = was.material;
+    let phystalk::spec::Material::Elastic(elastic_now) = now.material;
+    if let Auto::Value(is) = elastic_now.young_pa {
+        let was = match elastic_was.young_pa {
+            Auto::Value(value) => value,
+            Auto::Auto => draft.resolved(&path).unwrap_or(is),
+        };
+        let mut young = is;
+        scalar((was, is), how, &mut young, |v| format!("Young's modulus of {name} {}", say::pressure(v)), said);
+        draft.elastic(index).young_pa = Auto::Value(young);
+    }
+    let (was, is) = (elastic_was.density_kg_m3, elastic_now.density_kg_m3);
+    let mut density = is;
+    scalar((was, is), how, &mut density, |v| format!("density of {name} {} kg/m³", say::short(v)), said);
+    draft.elastic(index).density_kg_m3 = density;
+}
+
+/// A vector that went from `was` to `is`. Of a rate the changed part is turned round or grown by half for each share;
+/// of a place the step is taken the other way or once more.
+fn along(was: DVec3, is: DVec3, how: Follow, rate: bool) -> [f64; 3] {
+    let step = is - was;
+    let after = match (how, rate) {
+        (Follow::Opposite, true) => {
+            let unit = step.try_normalize().unwrap_or(DVec3::ZERO);
+            is - 2.0 * is.dot(unit) * unit
+        }
+        (Follow::Opposite, false) => was - step,
+        (Follow::On(share), true) => is + step * (1.5f64.powf(share) - 1.0),
+        (Follow::On(share), false) => is + step * share,
+    };
+    say::tidy3(after)
+}
+
+/// A positive number that went from `was` to `is`, by its ratio.
+fn scalar((was, is): (f64, f64), how: Follow, target: &mut f64, say: impl Fn(f64) -> String, said: &mut Vec<String>) {
+    if was == is || was <= 0.0 || is <= 0.0 {
+        return;
+    }
+    *target = say::tidy(match how {
+        Follow::Opposite => was * was / is,
+        Follow::On(share) => is * (is / was).powf(share),
+    });
+    said.push(say(*target));
+}
+
+/// Directions alone, right after a push: "no, to the right". The newest velocity or push gets that way and keeps its strength.
+pub fn aim(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
+    let directions = clause.take_directions();
+    let Some(before) = draft.context.previous_spec.filter(|_| !directions.is_empty()) else { return Ok(false) };
+    let now = draft.context.spec;
+    for index in 0..now.objects.len() {
+        let thing = &now.objects[index];
+        let heading = draft.frame(index).heading(&directions).ok_or("those directions cancel out")?;
+        let event = now
+            .events
+            .iter()
+            .position(|e| e.object == thing.name && e.push_m_s.is_some() && before.events.iter().find(|b| b.name == e.name) != Some(e));
+        if let Some(i) = event {
+            let strength = DVec3::from_array(now.events[i].push_m_s.unwrap_or_default()).length();
+            draft.spec.events[i].push_m_s = Some(say::tidy3(heading.unit * strength));
+            draft.gloss.push(format!("{} of {} goes {}: {}", now.events[i].name, thing.name, heading.said, say::speed(strength)));
+            return Ok(true);
+        }
+        let was = before.objects.iter().find(|o| o.name == thing.name).map_or([0.0; 3], |o| o.velocity_m_s);
+        let step = DVec3::from_array(thing.velocity_m_s) - DVec3::from_array(was);
+        if step != DVec3::ZERO {
+            let velocity = DVec3::from_array(was) + heading.unit * step.length();
+            draft.object(index).velocity_m_s = say::tidy3(velocity);
+            draft.gloss.push(format!("{} goes {}: {}", thing.name, heading.said, say::speed(step.length())));
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}

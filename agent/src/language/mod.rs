@@ -1,0 +1,160 @@
+//! The offline phrasebook: words to edits, without a language model.
+//!
+//! A request is read in four steps, one file each: [`tokens`] (words, numbers, signs), [`phrases`] (stretches of words
+//! with one meaning, from the [`lexicon`], [`numbers`] and the objects' names), [`clause`] (what belongs together), and
+//! [`clauses`] (what it asks for). A clause's readers *take* the phrases that they use; what nobody took, and is not a
+//! small word, is reported word by word. Nothing is guessed in silence: amounts that were not given, corrected
+//! spellings and taken directions are in the gloss.
+
+mod clause;
+mod clauses;
+mod directions;
+mod draft;
+mod lexicon;
+mod numbers;
+mod phrases;
+mod say;
+mod session;
+#[cfg(test)]
+mod tests;
+mod tokens;
+
+use draft::Draft;
+use lexicon::Sense;
+use phrases::{Names, Reading};
+use phystalk::spec::{Edit, Spec};
+use phystalk::world::Facts;
+
+/// What a request came to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reply {
+    /// Changes of the spec; there may be none where all is as asked already.
+    Edits {
+        /// The changes.
+        edits: Vec<Edit>,
+        /// What was understood, one sentence each.
+        gloss: Vec<String>,
+        /// Words that were not understood, as written.
+        not_understood: Vec<String>,
+    },
+    /// Back by so many versions.
+    Undo(u32),
+    /// Forward by so many.
+    Redo(u32),
+    /// Back to a version.
+    BackTo(VersionRef),
+    /// Nothing is done.
+    Refused {
+        /// Why, and what would be understood.
+        reason: String,
+        /// Words that were not understood, as written.
+        not_understood: Vec<String>,
+    },
+}
+
+/// A version by what it is called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VersionRef {
+    /// The first of the session.
+    First,
+    /// v1, v2, …
+    Number(u32),
+}
+
+/// What a request is about.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// The present spec.
+    pub spec: &'a Spec,
+    /// The scene in numbers.
+    pub facts: &'a Facts,
+    /// What `"auto"` came to in the newest run, by path; empty before the first run.
+    pub resolved: &'a serde_json::Map<String, serde_json::Value>,
+    /// The spec that the newest turn's edits were made on: "no, the other way", "again", "undo that and …".
+    pub previous_spec: Option<&'a Spec>,
+}
+
+/// Understands a request. The same text and context give the same reply; no text panics.
+pub fn understand(text: &str, context: &Context) -> Reply {
+    let names = Names::new(context.spec.objects.iter().map(|o| o.name.as_str()));
+    let mut reading = phrases::read(tokens::tokenise(text), &names);
+    if let Some(reason) = session::question(text, &reading) {
+        return refused(reason, &reading);
+    }
+    session::interjections(&mut reading);
+    match session::understand(&mut reading) {
+        Ok(session::Turn::None) => edits(&reading, context, context.spec.clone()),
+        Ok(session::Turn::Reply(reply)) => reply,
+        Ok(session::Turn::UndoAnd) => match context.previous_spec {
+            Some(previous) => edits(&reading, context, previous.clone()),
+            None => refused("there is nothing to undo".to_owned(), &reading),
+        },
+        Err(reason) => refused(reason, &reading),
+    }
+}
+
+/// A request that is refused as a whole, with the words of it that nobody knows.
+fn refused(reason: String, reading: &Reading) -> Reply {
+    let unknown = reading.phrases.iter().filter(|p| p.sense == Sense::Unknown).map(|p| p.span.clone());
+    Reply::Refused { reason, not_understood: words(reading, unknown) }
+}
+
+/// Reads clause by clause into edits, starting from `start`.
+fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
+    let mut draft = Draft::new(context, start);
+    let mut clauses = clause::split(reading.phrases.clone());
+    // The world of the turn holds for all of it: "jump 30 cm and do it on the moon" is 30 cm on the moon.
+    for clause in &mut clauses {
+        clauses::world::ahead(clause, &mut draft);
+    }
+    let mut ignored = Vec::new();
+    let mut understood = false;
+    for clause in &mut clauses {
+        let before = (draft.spec.clone(), draft.gloss.len());
+        match clauses::understand(clause, &mut draft, &reading.tokens) {
+            Ok(()) => understood |= clause.took_something(),
+            Err(reason) => {
+                draft.spec = before.0;
+                draft.gloss.truncate(before.1);
+                clause.refuse();
+                draft.refusals.push(reason);
+            }
+        }
+        ignored.extend(clause.not_understood());
+    }
+    ignored.extend(draft.missing.iter().cloned());
+    let not_understood = words(reading, ignored.into_iter());
+    let edits = context.spec.edits_to(&draft.spec);
+    let corrections = reading.corrections.iter().map(|(_, said)| said.clone());
+    if !understood {
+        return Reply::Refused { reason: reason(&draft, &not_understood), not_understood };
+    }
+    let mut gloss: Vec<String> = corrections.collect();
+    gloss.append(&mut draft.gloss);
+    gloss.append(&mut draft.refusals);
+    if edits.is_empty() && gloss.is_empty() {
+        gloss.push("that is so already".to_owned());
+    }
+    Reply::Edits { edits, gloss, not_understood }
+}
+
+/// Why nothing was done.
+fn reason(draft: &Draft, not_understood: &[String]) -> String {
+    const CAN: &str = "try \"make it jump\", \"drop it from 1 m\", \"push it to the left at 0.5 s\", \"softer\", \"make it of rubber\", \"do it on the moon\", \
+                       \"for 3 seconds\", \"look from above\", \"undo that\"";
+    if !draft.refusals.is_empty() {
+        return draft.refusals.join("; ");
+    }
+    if not_understood.is_empty() {
+        return format!("nothing to do in that; {CAN}");
+    }
+    format!("not understood: {}; {CAN}", not_understood.join(", "))
+}
+
+/// The words of some stretches, as written, in the order of the request, each once.
+fn words(reading: &Reading, spans: impl Iterator<Item = std::ops::Range<usize>>) -> Vec<String> {
+    let mut places: Vec<usize> = spans.flatten().collect();
+    places.sort_unstable();
+    places.dedup();
+    places.into_iter().map(|i| reading.tokens[i].text.clone()).collect()
+}

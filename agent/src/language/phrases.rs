@@ -1,0 +1,272 @@
+//! Tokens to phrases: each stretch of words becomes one [`Phrase`] with a meaning, longest match first, and times
+//! are put together from their prepositions and numbers. Nothing is dropped here: a word without a meaning is a
+//! phrase too.
+
+use super::lexicon::{Form, PATTERNS, Preposition, Property, SECTIONS, Sense};
+use super::numbers::{self, Dimension, Quantity};
+use super::tokens::Token;
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::sync::LazyLock;
+
+/// A stretch of tokens with one meaning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phrase {
+    /// What it means.
+    pub sense: Sense,
+    /// Its tokens.
+    pub span: Range<usize>,
+}
+
+/// Names of the spec's objects as words.
+pub struct Names {
+    names: Vec<Vec<String>>,
+}
+
+impl Names {
+    /// From the objects' names: "lego_bulldozer" is heard as "lego bulldozer" and as "bulldozer".
+    pub fn new<'a>(names: impl Iterator<Item = &'a str>) -> Names {
+        Names { names: names.map(|n| n.split(['_', '-', '.', ' ']).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()).collect() }
+    }
+
+    /// The objects named at `at`, and how many tokens name them: whole names first, then words that all bearers share.
+    fn read(&self, tokens: &[Token], at: usize) -> Option<(Vec<usize>, usize)> {
+        let starts = |name: &[String]| !name.is_empty() && name.iter().enumerate().all(|(i, w)| tokens.get(at + i).is_some_and(|t| t.word == *w));
+        let longest = self.names.iter().enumerate().filter(|(_, n)| starts(n)).max_by_key(|(_, n)| n.len());
+        if let Some((index, name)) = longest {
+            return Some((vec![index], name.len()));
+        }
+        let word = &tokens.get(at)?.word;
+        if word.chars().count() < 3 || !word.chars().all(char::is_alphabetic) {
+            return None;
+        }
+        let holding = |w: &str| -> Vec<usize> { self.names.iter().enumerate().filter(|(_, n)| n.iter().any(|m| m == w)).map(|(i, _)| i).collect() };
+        let found = holding(word);
+        if !found.is_empty() {
+            return Some((found, 1));
+        }
+        let singular = word.strip_suffix('s').map(holding).unwrap_or_default();
+        (!singular.is_empty()).then_some((singular, 1))
+    }
+
+    fn words(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().flatten().map(String::as_str)
+    }
+}
+
+/// Phrases of a request, and what was read otherwise than written: "read 'vsae' as 'vase'".
+pub struct Reading {
+    /// The tokens after correction; texts stay as written.
+    pub tokens: Vec<Token>,
+    /// The phrases, in order, covering every token.
+    pub phrases: Vec<Phrase>,
+    /// Corrections, as sentences, with the token that each concerns.
+    pub corrections: Vec<(usize, String)>,
+}
+
+/// Reads all phrases.
+pub fn read(mut tokens: Vec<Token>, names: &Names) -> Reading {
+    let mut phrases: Vec<Phrase> = Vec::new();
+    let mut corrections = Vec::new();
+    let mut at = 0;
+    while at < tokens.len() {
+        let found = read_one(&tokens, at, names).or_else(|| {
+            let after_article = phrases.last().is_some_and(|p| p.sense == Sense::Article);
+            let known = correct(&tokens[at].word, names, after_article)?;
+            corrections.push((at, format!("read '{}' as '{known}'", tokens[at].text)));
+            tokens[at].word = known;
+            read_one(&tokens, at, names)
+        });
+        let (sense, length) = found.unwrap_or((Sense::Unknown, 1));
+        phrases.push(Phrase { sense, span: at..at + length });
+        at += length;
+    }
+    lead_measures(&mut phrases);
+    tell_times(&mut phrases);
+    Reading { tokens, phrases, corrections }
+}
+
+/// The longest of: an object's name, a number with its unit, a pattern of the lexicon. A tie goes to the name, then to the lexicon.
+fn read_one(tokens: &[Token], at: usize, names: &Names) -> Option<(Sense, usize)> {
+    let name = names.read(tokens, at).map(|(objects, length)| (Sense::Objects(objects), length));
+    let pattern = pattern(tokens, at);
+    let measure = span_of_time(tokens, at).or_else(|| measure(tokens, at));
+    [name, pattern, measure, version(tokens, at)].into_iter().flatten().fold(None, |best: Option<(Sense, usize)>, next| match best {
+        Some(best) if best.1 >= next.1 => Some(best),
+        _ => Some(next),
+    })
+}
+
+fn pattern(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
+    let fits = |words: &[&str]| words.iter().enumerate().all(|(i, w)| tokens.get(at + i).is_some_and(|t| t.word == *w));
+    let pattern = PATTERNS.get(tokens[at].word.as_str())?.iter().find(|p| fits(&p.words))?;
+    Some((pattern.sense.clone(), pattern.words.len()))
+}
+
+fn measure(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
+    let (quantity, end) = numbers::quantity(tokens, at)?;
+    // "half" and "a third" alone are factors, which the lexicon reads.
+    if quantity.dimension == Dimension::Plain && tokens[at].number.is_none() && !numbers::is_number_word(&tokens[at].word) && quantity.value < 1.0 {
+        return None;
+    }
+    let sense = match quantity.dimension {
+        Dimension::Times => Sense::Factor(quantity.value),
+        _ => Sense::Measure(quantity, None),
+    };
+    Some((sense, end - at))
+}
+
+/// "from 0.2 s to 1 s", "from 0.2 to 1 s", "between 0.2 and 1 s".
+fn span_of_time(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
+    if !matches!(tokens[at].word.as_str(), "from" | "between") {
+        return None;
+    }
+    let (first, middle) = numbers::quantity(tokens, at + 1)?;
+    if !matches!(tokens.get(middle)?.word.as_str(), "to" | "until" | "till" | "and") {
+        return None;
+    }
+    let (last, end) = numbers::quantity(tokens, middle + 1)?;
+    let time = |d| matches!(d, Dimension::Time | Dimension::Plain);
+    let fits = last.dimension == Dimension::Time && time(first.dimension);
+    fits.then(|| {
+        // "from 200 to 800 ms": the first number is in the unit of the last.
+        let unit = if first.dimension == Dimension::Plain { last.value / plain_value(tokens, middle + 1).unwrap_or(last.value) } else { 1.0 };
+        (Sense::Span(first.value * unit, last.value), end - at)
+    })
+}
+
+fn plain_value(tokens: &[Token], at: usize) -> Option<f64> {
+    numbers::number(tokens, at).map(|(v, _)| v).filter(|v| *v != 0.0)
+}
+
+fn version(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
+    let number = tokens[at].word.strip_prefix('v')?.parse().ok()?;
+    Some((Sense::Version(number), 1))
+}
+
+/// Gives each measure the preposition before it: "from a height of about 2 m" is a length from.
+fn lead_measures(phrases: &mut [Phrase]) {
+    for i in 0..phrases.len() {
+        let Sense::Measure(quantity, None) = phrases[i].sense else { continue };
+        let mut back = i;
+        let mut lead = None;
+        while back > 0 {
+            back -= 1;
+            match phrases[back].sense {
+                Sense::Preposition(Preposition::Of | Preposition::Around) | Sense::Article | Sense::Filler => {}
+                Sense::Property(Property::Height | Property::Speed | Property::Distance | Property::Strength) => {}
+                Sense::Preposition(preposition) => {
+                    lead = Some(preposition);
+                    break;
+                }
+                _ => break,
+            }
+        }
+        if lead.is_none() {
+            if i > 0 && phrases[i - 1].sense == Sense::Preposition(Preposition::Of) {
+                phrases[i].sense = Sense::Measure(quantity, Some(Preposition::Of));
+            }
+            continue;
+        }
+        phrases[i].sense = Sense::Measure(quantity, lead);
+        for between in &mut phrases[back..i] {
+            between.sense = Sense::Filler;
+        }
+    }
+}
+
+/// Turns measures of time into moments and spans, by their prepositions.
+fn tell_times(phrases: &mut [Phrase]) {
+    for i in 0..phrases.len() {
+        let Sense::Measure(Quantity { value, dimension: Dimension::Time }, lead) = phrases[i].sense else { continue };
+        let following = phrases.get(i + 1).map(|p| &p.sense);
+        let ends = |at: usize| {
+            matches!(
+                phrases.get(at).map(|p| &p.sense),
+                None | Some(Sense::Separator | Sense::Verb(_) | Sense::It | Sense::Objects(_) | Sense::Filler)
+            )
+        };
+        let in_after = match following {
+            Some(Sense::Preposition(Preposition::After)) => true,
+            Some(Sense::Preposition(Preposition::In)) => ends(i + 2),
+            _ => false,
+        };
+        let longer = matches!(following, Some(Sense::Quality(Property::Duration, ..)));
+        let sense = match lead {
+            Some(Preposition::At | Preposition::After | Preposition::In | Preposition::From | Preposition::On) => Sense::At(value),
+            Some(Preposition::For) if !longer => Sense::For(value),
+            Some(Preposition::Until) => Sense::Until(value),
+            None if in_after => Sense::At(value),
+            _ => continue,
+        };
+        phrases[i].sense = sense;
+        if in_after && lead.is_none() {
+            phrases[i + 1].sense = Sense::Filler;
+        }
+    }
+}
+
+/// Words of the lexicon that a misspelt word may have meant; those of `nouns` also after "the".
+struct Known {
+    all: BTreeSet<&'static str>,
+    nouns: BTreeSet<&'static str>,
+}
+
+static KNOWN: LazyLock<Known> = LazyLock::new(|| {
+    let mut known = Known { all: BTreeSet::new(), nouns: BTreeSet::new() };
+    for entry in SECTIONS.iter().flat_map(|s| s.entries) {
+        let noun = matches!(
+            entry.sense,
+            Sense::Material(_)
+                | Sense::Gravity(_)
+                | Sense::Property(_)
+                | Sense::Part(_)
+                | Sense::Direction(_)
+                | Sense::Camera
+                | Sense::Ground
+                | Sense::Quality(_, _, Form::Plain)
+        );
+        // What is refused is refused for its own name, never for one that looks like it.
+        if matches!(entry.sense, Sense::Unbuilt(_)) {
+            continue;
+        }
+        for word in entry.words.split(['|', ' ']).filter(|w| w.len() >= 4) {
+            known.all.insert(word);
+            if noun {
+                known.nouns.insert(word);
+            }
+        }
+    }
+    known
+});
+
+/// The one known word that is a single insertion, deletion, replacement or transposition away, where there is just one.
+///
+/// Words under four letters are left alone, and the first letter holds (or changes places with the second): so "flower"
+/// is never read as "lower". Names of objects are exempt from the latter.
+fn correct(word: &str, names: &Names, after_article: bool) -> Option<String> {
+    let letters = word.chars().count();
+    if letters < 4 || !word.chars().all(char::is_alphabetic) {
+        return None;
+    }
+    let near = |known: &str| strsim::osa_distance(word, known) == 1;
+    let mut named = names.words().filter(|n| n.chars().count() >= 4 && near(n));
+    if let Some(name) = named.next() {
+        return named.all(|n| n == name).then(|| name.to_owned());
+    }
+    let starts_alike = |known: &str| {
+        let (mut a, mut b) = (word.chars(), known.chars());
+        let (a, b) = ((a.next(), a.next()), (b.next(), b.next()));
+        a.0 == b.0 || (a.0 == b.1 && a.1 == b.0)
+    };
+    let pool = if after_article { &KNOWN.nouns } else { &KNOWN.all };
+    let mut found = pool.iter().filter(|k| starts_alike(k) && near(k));
+    let first = found.next()?;
+    let rest: Vec<_> = found.collect();
+    // "jumsp" is near "jump" and "jumps": one meaning, so either will do.
+    let same = |other: &str| {
+        let sense = |w: &str| PATTERNS.get(w).and_then(|p| p.iter().find(|p| p.words.len() == 1)).map(|p| p.sense);
+        sense(other).is_some() && sense(other) == sense(first)
+    };
+    rest.iter().all(|other| same(other)).then(|| (*first).to_owned())
+}

@@ -1,0 +1,57 @@
+//! What holds for any text.
+
+use super::*;
+use proptest::prelude::*;
+
+/// Words of the lexicon, numbers, units, and words that nobody knows, in any order.
+fn request() -> impl Strategy<Value = String> {
+    let known: Vec<String> = lexicon::SECTIONS.iter().flat_map(|s| s.entries).flat_map(|e| e.words.split('|')).map(str::to_owned).collect();
+    let word = prop_oneof![
+        6 => proptest::sample::select(known),
+        1 => proptest::sample::select(vec!["vase", "the vase", "it", "0.5", "3", "30 cm", "2 m/s", "90 degrees", "10 kPa", "20 %", "v2", "at 1 s", "half"]).prop_map(str::to_owned),
+        1 => "[a-z]{1,9}",
+        1 => "\\PC{1,4}",
+    ];
+    proptest::collection::vec(word, 0..9).prop_map(|words| words.join(" "))
+}
+
+fn reported(reply: &Reply) -> Vec<String> {
+    match reply {
+        Reply::Edits { not_understood, .. } | Reply::Refused { not_understood, .. } => not_understood.clone(),
+        _ => Vec::new(),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// No text panics, the same text gives the same reply, the words reported are the text's own, and every edit is
+    /// one that the spec takes or refuses with a reason.
+    #[test]
+    fn any_request(text in request()) {
+        let stage = Stage::vase().with_table().then("make it jump").then("push it left");
+        let reply = stage.ask(&text);
+        prop_assert_eq!(&reply, &stage.ask(&text));
+        for word in reported(&reply) {
+            prop_assert!(text.contains(&word), "{} is not in {}", word, text);
+        }
+        if let Reply::Edits { edits, .. } = &reply {
+            let _ = stage.spec.apply(edits);
+        }
+    }
+
+    /// Bytes of any kind do not panic either.
+    #[test]
+    fn any_text(text in "\\PC*") {
+        let _ = Stage::vase().ask(&text);
+    }
+
+    /// A word that nobody knows is reported, whatever stands around it.
+    #[test]
+    fn unknown_words_are_reported(before in request(), after in request()) {
+        let text = format!("{before} zzyzxq {after}");
+        if let reply @ (Reply::Edits { .. } | Reply::Refused { .. }) = Stage::vase().ask(&text) {
+            prop_assert!(reported(&reply).contains(&"zzyzxq".to_owned()), "{:?} to {}", reply, text);
+        }
+    }
+}
