@@ -26,7 +26,8 @@ struct Frame {
     colour_at: u32,               // word of `pixels` where each optional plane starts
     depth_at: u32,
     id_at: u32,
-    pad: vec2<u32>,
+    ground_m: f32,               // world height of the plain ground
+    pad: u32,
 }
 
 // The bins that one Gaussian touches.

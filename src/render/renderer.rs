@@ -37,6 +37,8 @@ pub struct RenderOptions {
 pub struct GroundLook {
     /// World height of the plane.
     pub height_m: f32,
+    /// The factors on its colour, as [`super::shadow`] keeps them; without them it is not seen.
+    pub shadow: Option<wgpu::Buffer>,
 }
 
 /// Draws frames on one device. Frames in flight each have buffers of their own, used again once
@@ -107,7 +109,7 @@ impl Renderer {
             pairs: self.shared.pairs.load(Ordering::Relaxed).max(splats.count.saturating_mul(PAIRS_A_GAUSSIAN)).max(PAIRS_MIN),
             bins: uniform.bin_count(),
             words: planes.starts()[3],
-            backdrop: if options.ground.is_some() { size[0] * size[1] } else { 1 },
+            backdrop: if uniform.shaded == 1 { size[0] * size[1] } else { 1 },
         };
         let buffers = match self.shared.take(&need) {
             Some(buffers) => buffers,

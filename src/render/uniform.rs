@@ -33,7 +33,8 @@ pub(super) struct Uniform {
     pub colour_at: u32,
     pub depth_at: u32,
     pub id_at: u32,
-    pub pad: [u32; 2],
+    pub ground_m: f32,
+    pub pad: u32,
 }
 
 /// Which planes a picture has, and where in its words.
@@ -71,6 +72,7 @@ impl Uniform {
         let rows = view.world_to_camera.transpose().to_cols_array_2d();
         let (tangent_low, tangent_high) = tangents(view, &constants);
         let [colour_at, depth_at, id_at, _] = planes.starts();
+        let shaded = options.ground.as_ref().is_some_and(|ground| ground.shadow.is_some());
         let word = |wanted: bool, at: u32| if wanted { at } else { u32::MAX };
         Uniform {
             camera: [rows[0], rows[1], rows[2]],
@@ -94,11 +96,12 @@ impl Uniform {
             stop: constants.stop,
             alpha_min_log2: constants.alpha_min.log2(),
             alpha_min: constants.alpha_min,
-            shaded: u32::from(options.ground.is_some()),
+            shaded: u32::from(shaded),
             colour_at: word(planes.colour, colour_at),
             depth_at: word(planes.depth, depth_at),
             id_at: word(planes.id, id_at),
-            pad: [0; 2],
+            ground_m: options.ground.as_ref().map_or(0.0, |ground| ground.height_m),
+            pad: 0,
         }
     }
 

@@ -57,7 +57,7 @@ impl Figure {
         let point = |p: [f64; 3]| Vec3::from(p.map(|v| v as f32));
         let view = View::look_at(point(now.eye_m), point(now.target_m), now.fov_deg as f32, size).with_background(background);
         // Static Gaussians are a ground of their own; a cut-out gets a plain one.
-        let ground = (!self.has_static).then_some(GroundLook { height_m: self.ground_m });
+        let ground = (!self.has_static).then_some(GroundLook { height_m: self.ground_m, shadow: None });
         self.renderer.draw(&self.splats, &view, &RenderOptions { ground, ..RenderOptions::default() })
     }
 }
