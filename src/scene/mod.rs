@@ -1,6 +1,7 @@
 //! Gaussians: read and write formats, up axis, prune, select, the built-in demo scene.
 
 mod codec;
+pub mod demo;
 mod error;
 mod file;
 mod frame;
