@@ -2,7 +2,7 @@
 
 use super::distance;
 use super::grid::Grid;
-use glam::{UVec3, Vec3};
+use glam::Vec3;
 
 /// A solid body above its floor.
 pub(super) struct Body {
@@ -29,15 +29,23 @@ impl Body {
         Body { signed: signed.collect(), volume_m3, grid }
     }
 
-    /// Distance to the surface, metres, negative inside: trilinear between voxel centres.
+    /// Signed distance at the centre of the voxel that holds a point, metres.
+    pub fn nearest_m(&self, point: Vec3) -> f32 {
+        let at = ((point - self.grid.low) / self.grid.voxel_m).max(Vec3::ZERO).as_uvec3().min(self.grid.size - 1);
+        self.signed[self.grid.index(at)] * self.grid.voxel_m
+    }
+
+    /// Distance to the surface, metres, negative inside: trilinear between voxel centres. A grid has
+    /// room around its solid, so that it is never less than two voxels wide.
     pub fn distance_m(&self, point: Vec3) -> f32 {
         let last = (self.grid.size - 1).as_vec3();
         let at = ((point - self.grid.low) / self.grid.voxel_m - 0.5).clamp(Vec3::ZERO, last);
-        let base = at.floor().min((last - 1.0).max(Vec3::ZERO));
-        let (t, base) = (at - base, base.as_uvec3());
-        let corner = |x: u32, y: u32, z: u32| self.signed[self.grid.index((base + UVec3::new(x, y, z)).min(self.grid.size - 1))];
-        let along_x = |y: u32, z: u32| corner(0, y, z) + t.x * (corner(1, y, z) - corner(0, y, z));
-        let along_y = |z: u32| along_x(0, z) + t.y * (along_x(1, z) - along_x(0, z));
-        (along_y(0) + t.z * (along_y(1) - along_y(0))) * self.grid.voxel_m
+        let base = at.floor().min(last - 1.0);
+        let (t, first) = (at - base, self.grid.index(base.as_uvec3()));
+        let (row, slab) = (self.grid.size.x as usize, self.grid.slab());
+        let mix = |a: f32, b: f32, t: f32| a + t * (b - a);
+        let along_x = |i: usize| mix(self.signed[i], self.signed[i + 1], t.x);
+        let along_y = |i: usize| mix(along_x(i), along_x(i + row), t.y);
+        mix(along_y(first), along_y(first + slab), t.z) * self.grid.voxel_m
     }
 }

@@ -14,8 +14,11 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
 use std::num::NonZero;
 
-/// Optical depth from which a voxel counts as solid: it stops 40 % of the light.
-pub(super) const OCCUPIED_DEPTH: f32 = 0.5;
+/// Optical depth from which a voxel counts as solid: it stops half of the light.
+const OCCUPIED_DEPTH: f32 = std::f32::consts::LN_2;
+/// Variance that blurs each Gaussian, in squared voxels: about that of a voxel's own box, 1/12 along
+/// each axis, and of its place between the centres.
+const VOXEL_VARIANCE: f32 = 0.15;
 /// Gaussians below this opacity are haze and make no solid.
 const HAZE_OPACITY: f32 = 0.05;
 /// Opacity is capped here, so that the optical depth stays finite.
@@ -114,7 +117,7 @@ fn choose_grid(gaussians: &Gaussians, visible: &[usize], floor_m: f32, spacing_m
 /// A Gaussian in voxel units; none where it lies below the floor.
 fn element(gaussians: &Gaussians, index: usize, grid: &Grid) -> Option<Element> {
     let centre = (gaussians.mean[index] - grid.low) / grid.voxel_m;
-    let blurred = gaussians.covariance(index) * grid.voxel_m.powi(-2) + Mat3::from_diagonal(Vec3::splat(0.25));
+    let blurred = gaussians.covariance(index) * grid.voxel_m.powi(-2) + Mat3::from_diagonal(Vec3::splat(VOXEL_VARIANCE));
     let reach = Vec3::new(blurred.x_axis.x, blurred.y_axis.y, blurred.z_axis.z).map(f32::sqrt) * REACH_SQUARED.sqrt();
     if centre.z + reach.z <= 0.0 {
         return None;

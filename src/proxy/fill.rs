@@ -44,70 +44,110 @@ fn farther(grid: &Grid, mask: &[bool], radius: f32) -> Vec<bool> {
 /// In how many of the 26 directions something occupied, or the floor, stands between each voxel and
 /// the grid's border.
 fn blocked_ways(grid: &Grid, occupied: &[bool]) -> Vec<u8> {
-    let steps: Vec<[i32; 3]> = (0..27).map(|i| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1]).filter(|&step| step != [0; 3]).collect();
+    let steps: Vec<[isize; 3]> = (0..27).map(|i| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1]).filter(|&step| step != [0; 3]).collect();
     let none = || vec![0u8; grid.len()];
-    steps
-        .par_iter()
-        .fold(none, |mut ways, &step| {
-            for (ways, blocked) in ways.iter_mut().zip(blocked(grid, occupied, step)) {
-                *ways += blocked;
-            }
-            ways
-        })
-        .reduce(none, |mut ways, more| {
-            ways.iter_mut().zip(more).for_each(|(ways, more)| *ways += more);
-            ways
-        })
+    let count = |mut ways: Vec<u8>, step: &[isize; 3]| {
+        add_blocked(grid, occupied, *step, &mut ways);
+        ways
+    };
+    let sum = |mut ways: Vec<u8>, more: Vec<u8>| {
+        ways.iter_mut().zip(more).for_each(|(ways, more)| *ways += more);
+        ways
+    };
+    steps.par_chunks(steps.len().div_ceil(rayon::current_num_threads())).map(|steps| steps.iter().fold(none(), count)).reduce(none, sum)
 }
 
-/// One where the way along `step` is blocked: voxels are visited so that the next one on the way is known already.
-fn blocked(grid: &Grid, occupied: &[bool], step: [i32; 3]) -> Vec<u8> {
-    let [nx, ny, nz] = grid.size.to_array().map(|n| n as i32);
-    let visit = |count: i32, step: i32| (0..count).map(move |i| if step > 0 { count - 1 - i } else { i });
-    let row = |y: i32, z: i32| ((z * ny + y) * nx) as usize;
-    let mut blocked = vec![0u8; grid.len()];
-    for z in visit(nz, step[2]) {
-        for y in visit(ny, step[1]) {
-            let (next_y, next_z, here) = (y + step[1], z + step[2], row(y, z));
-            if next_z < 0 {
-                blocked[here..here + nx as usize].fill(1);
-            } else if (0..ny).contains(&next_y) && next_z < nz {
-                let next = row(next_y, next_z);
-                for x in visit(nx, step[0]).filter(|x| (0..nx).contains(&(x + step[0]))) {
-                    let from = next + (x + step[0]) as usize;
-                    blocked[here + x as usize] = blocked[from] | u8::from(occupied[from]);
-                }
+/// Adds one where the way along `step` is blocked. Rows are visited so that the next one on the way
+/// is known already.
+fn add_blocked(grid: &Grid, occupied: &[bool], step: [isize; 3], ways: &mut [u8]) {
+    let [nx, ny, nz] = grid.size.to_array().map(|n| n as isize);
+    let visit = |count: isize, step: isize| (0..count).map(move |i| if step > 0 { count - 1 - i } else { i });
+    // one voxel of air at both ends of a row, so that steps sideways need no test
+    let padded = nx as usize + 2;
+    let mut blocked = vec![0u8; padded * grid.row_count()];
+    for (z, y) in visit(nz, step[2]).flat_map(|z| visit(ny, step[1]).map(move |y| (z, y))) {
+        let (next_y, next_z, row) = (y + step[1], z + step[2], (z * ny + y) as usize);
+        if next_z < 0 {
+            blocked[row * padded..(row + 1) * padded].fill(1);
+        } else if (0..ny).contains(&next_y) && next_z < nz {
+            let next = (next_z * ny + next_y) as usize;
+            if next == row {
+                scan_row(&mut blocked[row * padded..(row + 1) * padded], &occupied[row * nx as usize..(row + 1) * nx as usize], step[0]);
+            } else {
+                let (from, to) = two_rows(&mut blocked, next, row, padded);
+                shift_row(to, from, &occupied[next * nx as usize..(next + 1) * nx as usize], step[0]);
             }
         }
+        let ways = &mut ways[row * nx as usize..(row + 1) * nx as usize];
+        ways.iter_mut().zip(&blocked[row * padded + 1..]).for_each(|(ways, blocked)| *ways += blocked);
     }
-    blocked
 }
 
-/// Voxels that a path over faces of open voxels joins to the sides or the top of the grid.
+/// What a row sees of the row next to it, `step` voxels along x.
+fn shift_row(to: &mut [u8], from: &[u8], occupied: &[bool], step: isize) {
+    let count = occupied.len();
+    let start = (1 + step) as usize;
+    for (to, &from) in to[1..=count].iter_mut().zip(&from[start..start + count]) {
+        *to = from;
+    }
+    let (skip, drop) = ((step > 0) as usize, (step < 0) as usize);
+    for (to, &occupied) in to[1 + drop..1 + count - skip].iter_mut().zip(&occupied[skip..count - drop]) {
+        *to |= u8::from(occupied);
+    }
+}
+
+/// What a row sees along itself.
+fn scan_row(row: &mut [u8], occupied: &[bool], step: isize) {
+    let count = occupied.len();
+    let mut seen = 0;
+    for i in 0..count {
+        let x = if step > 0 { count - 1 - i } else { i };
+        row[x + 1] = seen;
+        seen |= u8::from(occupied[x]);
+    }
+}
+
+/// Two different rows of a buffer, one to read and one to write.
+fn two_rows(buffer: &mut [u8], read: usize, write: usize, length: usize) -> (&[u8], &mut [u8]) {
+    let (low, high) = buffer.split_at_mut(read.max(write) * length);
+    let first = read.min(write) * length;
+    let (low, high) = (&mut low[first..first + length], &mut high[..length]);
+    if read < write { (low, high) } else { (high, low) }
+}
+
+/// Voxels that a path over faces of open voxels joins to the sides or the top of the grid, found a
+/// run of a row at a time.
 fn flood(grid: &Grid, open: &[bool]) -> Vec<bool> {
     let [nx, ny, nz] = grid.size.to_array().map(|n| n as usize);
-    let (row, slab) = (nx, nx * ny);
     let mut reached = vec![false; grid.len()];
-    let mut stack: Vec<u32> = Vec::new();
-    let mut reach = |index: usize, stack: &mut Vec<u32>| {
-        if open[index] && !reached[index] {
-            reached[index] = true;
-            stack.push(index as u32);
-        }
-    };
-    for index in 0..grid.len() {
-        let (x, y, z) = (index % nx, index / nx % ny, index / slab);
-        if x == 0 || x + 1 == nx || y == 0 || y + 1 == ny || z + 1 == nz {
-            reach(index, &mut stack);
-        }
+    let mut starts: Vec<u32> = Vec::new();
+    for row in 0..grid.row_count() {
+        let (first, y, z) = (row * nx, row % ny, row / ny);
+        let border = y == 0 || y + 1 == ny || z + 1 == nz;
+        let ends = if border { (first..first + nx).step_by(1) } else { (first..first + nx).step_by((nx - 1).max(1)) };
+        starts.extend(ends.filter(|&i| open[i]).map(|i| i as u32));
     }
-    while let Some(index) = stack.pop() {
-        let index = index as usize;
-        let (x, y, z) = (index % nx, index / nx % ny, index / slab);
-        let ways = [(x > 0, index.wrapping_sub(1)), (x + 1 < nx, index + 1), (y > 0, index.wrapping_sub(row)), (y + 1 < ny, index + row)];
-        let vertical = [(z > 0, index.wrapping_sub(slab)), (z + 1 < nz, index + slab)];
-        for (_, next) in ways.into_iter().chain(vertical).filter(|(within, _)| *within) {
-            reach(next, &mut stack);
+    while let Some(start) = starts.pop() {
+        let start = start as usize;
+        if reached[start] {
+            continue;
+        }
+        let row = start / nx;
+        let (first, y, z) = (row * nx, row % ny, row / ny);
+        let from = (first..start).rev().take_while(|&i| open[i]).last().unwrap_or(start);
+        let to = (start..first + nx).take_while(|&i| open[i]).last().unwrap_or(start);
+        reached[from..=to].fill(true);
+        let beside = [(y > 0, row.wrapping_sub(1)), (y + 1 < ny, row + 1), (z > 0, row.wrapping_sub(ny)), (z + 1 < nz, row + ny)];
+        for (_, next) in beside.into_iter().filter(|(within, _)| *within) {
+            let shift = next * nx;
+            let mut before = false;
+            for i in from - first + shift..=to - first + shift {
+                let fresh = open[i] && !reached[i];
+                if fresh && !before {
+                    starts.push(i as u32);
+                }
+                before = fresh;
+            }
         }
     }
     reached

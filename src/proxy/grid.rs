@@ -40,6 +40,20 @@ impl Grid {
         UVec3::new(x as u32, (row % self.size.y as usize) as u32, (row / self.size.y as usize) as u32)
     }
 
+    /// The voxels, by index, that share a face with one.
+    pub fn faces(&self, index: u32) -> impl Iterator<Item = u32> {
+        let (v, row, slab) = (self.voxel(index as usize), self.size.x, self.slab() as u32);
+        let ways = [
+            (v.x > 0, index.wrapping_sub(1)),
+            (v.x + 1 < self.size.x, index + 1),
+            (v.y > 0, index.wrapping_sub(row)),
+            (v.y + 1 < self.size.y, index + row),
+            (v.z > 0, index.wrapping_sub(slab)),
+            (v.z + 1 < self.size.z, index + slab),
+        ];
+        ways.into_iter().filter_map(|(within, near)| within.then_some(near))
+    }
+
     /// The middle of a voxel, metres.
     pub fn centre(&self, voxel: UVec3) -> Vec3 {
         self.low + (voxel.as_vec3() + 0.5) * self.voxel_m

@@ -8,11 +8,14 @@ use parry3d::math::Vector;
 use parry3d::transformation::try_convex_hull;
 use rayon::prelude::*;
 
+/// A hull with less than this share of its longest side cubed is flat but for rounding.
+const FLAT: f32 = 1e-6;
+
 /// Marks the voxels whose centre lies within the hull of the Gaussians' centres.
 pub(super) fn solid(grid: &Grid, gaussians: &Gaussians) -> Result<Vec<bool>, ProxyError> {
     let points: Vec<Vector> = gaussians.mean.iter().map(|m| Vector::new(m.x, m.y, m.z)).collect();
-    let flat = |_| ProxyError::FlatHull { gaussians: gaussians.len() };
-    let (corners, faces) = try_convex_hull(&points).map_err(flat)?;
+    let flat = ProxyError::FlatHull { gaussians: gaussians.len() };
+    let Ok((corners, faces)) = try_convex_hull(&points) else { return Err(flat) };
     let corner = |i: u32| Vec3::new(corners[i as usize].x, corners[i as usize].y, corners[i as usize].z);
     let planes: Vec<(Vec3, f32)> = faces
         .iter()
@@ -21,6 +24,13 @@ pub(super) fn solid(grid: &Grid, gaussians: &Gaussians) -> Result<Vec<bool>, Pro
             (normal, normal.dot(corner(a)))
         })
         .collect();
+    // six times the volume, as pyramids over the faces
+    let apex = corner(0);
+    let pyramids = faces.iter().map(|&[a, b, c]| (corner(a) - apex).dot((corner(b) - apex).cross(corner(c) - apex)));
+    let longest = corners.iter().map(|c| (Vec3::new(c.x, c.y, c.z) - apex).length()).fold(0.0, f32::max);
+    if pyramids.sum::<f32>() <= FLAT * longest.powi(3) {
+        return Err(flat);
+    }
     let row = grid.size.x as usize;
     let mut solid = vec![false; grid.len()];
     solid.par_chunks_mut(row).enumerate().for_each(|(index, cells)| {

@@ -11,8 +11,10 @@ mod distance;
 mod fill;
 mod grid;
 mod hull;
+mod join;
 mod nearest;
 mod sample;
+mod sections;
 mod young;
 
 #[cfg(test)]
@@ -28,6 +30,8 @@ use glam::Vec3;
 
 /// Version of this room, for stage keys.
 pub const VERSION: u32 = 1;
+/// Share of the solid whose loss is worth a warning.
+const NOTABLE_SHARE: f64 = 1e-3;
 
 /// What to make a solid of.
 #[derive(Clone, Copy, Debug)]
@@ -116,26 +120,50 @@ pub enum ProxyError {
     },
 }
 
+/// What the Gaussians say about the solid, before any solver's cell is known.
+struct Shape {
+    density: density::Density,
+    /// Whether each voxel belongs to the solid.
+    solid: Vec<bool>,
+    joined: join::Joined,
+}
+
+/// The solid of an object's Gaussians: shell, what it encloses, loose pieces joined.
+fn shape(gaussians: &Gaussians, ground_m: f32) -> Result<Shape, ProxyError> {
+    let density = density::rasterise(gaussians, ground_m, fill::CLOSING_SPACINGS)?;
+    let mut solid = fill::solid(&density.grid, &density.occupied, density.spacing_m);
+    let joined = join::join(&density.grid, &mut solid, density.spacing_m);
+    Ok(Shape { density, solid, joined })
+}
+
+/// The convex hull of the centres on the same grid.
+fn hull_shape(gaussians: &Gaussians, ground_m: f32) -> Result<Shape, ProxyError> {
+    let density = density::rasterise(gaussians, ground_m, fill::CLOSING_SPACINGS)?;
+    let solid = hull::solid(&density.grid, gaussians)?;
+    Ok(Shape { density, solid, joined: join::Joined::default() })
+}
+
 /// Makes a solid of an object's Gaussians and fills it with particles.
 pub fn build(request: &ProxyRequest) -> Result<Solid, ProxyError> {
-    let density = density::rasterise(request.gaussians, request.ground_m, fill::CLOSING_SPACINGS)?;
+    let Shape { density, solid, joined } = match request.kind {
+        ProxyKind::Voxel => shape(request.gaussians, request.ground_m)?,
+        ProxyKind::Hull => hull_shape(request.gaussians, request.ground_m)?,
+    };
     let extent_m = density.grid.size.as_vec3().max_element() * density.grid.voxel_m;
     let cell_error = ProxyError::Cell { cell_m: request.cell_m, extent_m };
     let spacing_m = 0.5 * request.cell_m;
     if !(spacing_m > 0.0 && spacing_m.is_finite()) {
         return Err(cell_error);
     }
-    let solid = match request.kind {
-        ProxyKind::Voxel => fill::solid(&density.grid, &density.occupied, density.spacing_m),
-        ProxyKind::Hull => hull::solid(&density.grid, request.gaussians)?,
-    };
     let skin_m = density.spacing_m;
-    let body = Body::new(density.grid, &solid, sample::reach_m(spacing_m).max(skin_m));
+    let warnings = warnings(density.wide, &joined);
+    let reach_m = sample::reach_m(spacing_m, density.grid.voxel_m).max(skin_m);
+    let body = Body::new(density.grid, &solid, reach_m);
     let samples = sample::sample(&body, spacing_m, request.seed).ok_or(cell_error)?;
     if samples.is_empty() {
         return Err(ProxyError::Empty { gaussians: request.gaussians.len() });
     }
-    Ok(finish(&body, &samples, spacing_m, skin_m, warnings(density.wide)))
+    Ok(finish(&body, &samples, spacing_m, skin_m, warnings))
 }
 
 /// Orders the samples along a Morton curve and shares the body's volume among them.
@@ -156,6 +184,16 @@ fn finish(body: &Body, samples: &[sample::Sample], spacing_m: f32, skin_m: f32, 
     }
 }
 
-fn warnings(wide: usize) -> Vec<String> {
-    if wide == 0 { Vec::new() } else { vec![format!("{wide} Gaussians wider than the object itself are left out of its solid")] }
+fn warnings(wide: usize, joined: &join::Joined) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if wide > 0 {
+        warnings.push(format!("{wide} Gaussians wider than the object itself are left out of its solid"));
+    }
+    if joined.dropped_share > NOTABLE_SHARE {
+        let (pieces, share) = (joined.dropped, 100.0 * joined.dropped_share);
+        warnings.push(format!(
+            "{pieces} loose pieces far from the solid ({share:.1} % of it) have no particles of their own and follow the nearest ones"
+        ));
+    }
+    warnings
 }

@@ -6,13 +6,16 @@
 //! of the spacing each way, so that no two particles come closer than three fifths of it.
 
 use super::body::Body;
-use glam::{IVec3, UVec3, Vec3};
+use glam::{UVec3, Vec3};
 use rayon::prelude::*;
 
 /// Largest shift of a particle along an axis, in spacings.
 const JITTER: f32 = 0.2;
-/// A cell that is less full than this gives its volume to a fuller neighbour, where it has one.
+/// A cell that is less full than this gives its volume to a neighbour on the surface of something
+/// thick. Thin chains have no such neighbours and keep all their particles.
 const LEAST_FRACTION: f32 = 0.1;
+/// How full such a neighbour is at least.
+const HEIR_FRACTION: f32 = 0.5;
 /// Probes along an edge of a lattice cell, at most.
 const MOST_PROBES: f32 = 8.0;
 /// The lattice never has more cells.
@@ -34,8 +37,8 @@ struct Lattice {
 }
 
 /// How far from the surface distances must be known for a lattice of this spacing, metres.
-pub(super) fn reach_m(spacing_m: f32) -> f32 {
-    spacing_m
+pub(super) fn reach_m(spacing_m: f32, voxel_m: f32) -> f32 {
+    spacing_m + 2.0 * voxel_m
 }
 
 /// Particles of a body; none where the lattice would have too many cells.
@@ -46,21 +49,27 @@ pub(super) fn sample(body: &Body, spacing_m: f32, seed: u64) -> Option<Vec<Sampl
         return None;
     }
     let lattice = Lattice { low: body.grid.low, spacing_m, size: size.as_uvec3().max(UVec3::ONE) };
-    let slab = (lattice.size.x * lattice.size.y) as usize;
-    let cells: Vec<Option<Sample>> = (0..lattice.size.z)
-        .into_par_iter()
-        .flat_map_iter(|z| (0..slab as u32).map(move |i| UVec3::new(i % lattice.size.x, i / lattice.size.x, z)))
-        .map(|cell| lattice.particle(body, cell, seed))
-        .collect();
-    Some(lattice.fold_light(cells))
+    let slabs: Vec<Vec<(UVec3, Sample)>> = (0..lattice.size.z).into_par_iter().map(|z| lattice.slab(body, z, seed)).collect();
+    Some(lattice.fold_light(slabs.concat()))
 }
 
 impl Lattice {
+    /// The particles of one horizontal layer of cells.
+    fn slab(&self, body: &Body, z: u32, seed: u64) -> Vec<(UVec3, Sample)> {
+        let cells = (0..self.size.y).flat_map(|y| (0..self.size.x).map(move |x| UVec3::new(x, y, z)));
+        cells.filter_map(|cell| self.particle(body, cell, seed).map(|sample| (cell, sample))).collect()
+    }
+
     /// The particle of one cell, where it holds any solid.
     fn particle(&self, body: &Body, cell: UVec3, seed: u64) -> Option<Sample> {
         let centre = self.low + (cell.as_vec3() + 0.5) * self.spacing_m;
-        // half the cell's diagonal, and what interpolating between voxels may add
-        let corner = 0.87 * self.spacing_m + body.grid.voxel_m;
+        let probes = (self.spacing_m / body.grid.voxel_m).ceil().clamp(2.0, MOST_PROBES);
+        let step = self.spacing_m / probes;
+        // beyond the outermost probe and half a step no probe is cut
+        let corner = 0.5 * 3.0f32.sqrt() * (self.spacing_m - step) + 0.5 * step;
+        if body.nearest_m(centre) > corner + body.grid.voxel_m {
+            return None;
+        }
         let depth = body.distance_m(centre);
         if depth > corner {
             return None;
@@ -69,8 +78,6 @@ impl Lattice {
         if depth < -corner {
             return Some(Sample { position: centre + jitter, fraction: 1.0 });
         }
-        let probes = (self.spacing_m / body.grid.voxel_m).ceil().clamp(2.0, MOST_PROBES);
-        let step = self.spacing_m / probes;
         let (mut total, mut moment, mut deepest) = (0.0, Vec3::ZERO, (f32::INFINITY, centre));
         let edge = probes as u32;
         for i in 0..edge * edge * edge {
@@ -92,39 +99,26 @@ impl Lattice {
         Some(Sample { position: if body.distance_m(position) > 0.0 { deepest.1 } else { position }, fraction })
     }
 
-    /// Cells that are hardly full give their volume to their fullest neighbour.
-    fn fold_light(&self, mut cells: Vec<Option<Sample>>) -> Vec<Sample> {
+    /// Slivers of the surface give their volume to their fullest neighbour.
+    fn fold_light(&self, mut samples: Vec<(UVec3, Sample)>) -> Vec<Sample> {
         let index = |cell: UVec3| ((cell.z * self.size.y + cell.y) * self.size.x + cell.x) as usize;
-        let heir = |cell: UVec3| -> Option<usize> {
-            let mut best: Option<(f32, usize)> = None;
-            for i in 0..27 {
-                let near = cell.as_ivec3() + IVec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-                if near.cmplt(IVec3::ZERO).any() || near.cmpge(self.size.as_ivec3()).any() {
-                    continue;
-                }
-                let near = index(near.as_uvec3());
-                let fraction = cells[near].map_or(0.0, |s| s.fraction);
-                if fraction >= LEAST_FRACTION && best.is_none_or(|(most, _)| fraction > most) {
-                    best = Some((fraction, near));
-                }
+        let mut at = vec![u32::MAX; index(self.size - 1) + 1];
+        samples.iter().enumerate().for_each(|(i, (cell, _))| at[index(*cell)] = i as u32);
+        for i in 0..samples.len() {
+            let (cell, light) = samples[i];
+            if light.fraction >= LEAST_FRACTION {
+                continue;
             }
-            best.map(|(_, near)| near)
-        };
-        let light: Vec<(usize, usize)> = (0..cells.len())
-            .into_par_iter()
-            .filter(|&i| cells[i].is_some_and(|s| s.fraction < LEAST_FRACTION))
-            .filter_map(|i| {
-                let (row, x) = (i as u32 / self.size.x, i as u32 % self.size.x);
-                heir(UVec3::new(x, row % self.size.y, row / self.size.y)).map(|heir| (i, heir))
-            })
-            .collect();
-        for (from, to) in light {
-            let given = cells[from].take().map_or(0.0, |s| s.fraction);
-            if let Some(heir) = &mut cells[to] {
-                heir.fraction += given;
+            let low = cell.saturating_sub(UVec3::ONE);
+            let high = (cell + 1).min(self.size - 1);
+            let near = (low.z..=high.z).flat_map(|z| (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| UVec3::new(x, y, z))));
+            let fuller = near.map(|cell| at[index(cell)] as usize).filter(|&n| n < samples.len() && samples[n].1.fraction >= HEIR_FRACTION);
+            if let Some(heir) = fuller.max_by(|&a, &b| samples[a].1.fraction.total_cmp(&samples[b].1.fraction)) {
+                samples[heir].1.fraction += light.fraction;
+                samples[i].1.fraction = 0.0;
             }
         }
-        cells.into_iter().flatten().collect()
+        samples.into_iter().map(|(_, sample)| sample).filter(|sample| sample.fraction > 0.0).collect()
     }
 }
 

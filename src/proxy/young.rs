@@ -1,22 +1,33 @@
 //! `young_pa = "auto"`: soft enough to be seen moving, stiff enough that the captured thing stands.
 //!
 //! A column of height h and radius r stands under its own weight while h^3 <= 7.84 E r^2 / (4 rho g)
-//! (Greenhill 1881). The automatic stiffness is four times that bound for the most slender cut.
+//! (Greenhill 1881). Every horizontal cut leaves parts standing above it ([`sections`]); the part's
+//! cut, taken as one round column, gives its bound, and the object gets [`SAFETY`] times the largest
+//! bound of its major parts. Slender details that need more, a thin shoot or one of several stems
+//! that carry a head together, get it for themselves.
 
-use super::{density, fill};
+use super::sections::{Cut, Sections};
+use super::{Shape, shape};
 use crate::scene::Gaussians;
+use std::f64::consts::PI;
 
 /// Standard gravity, whatever the spec's is: the object stood on Earth when it was captured.
 const CAPTURE_GRAVITY_M_S2: f64 = 9.81;
-/// How far above the bound.
+/// How far above the bound: the thing still stands after one "softer".
 const SAFETY: f64 = 4.0;
-/// Softest and stiffest automatic value, Pa.
+/// Softest and stiffest automatic value of a whole object, Pa.
 const RANGE_PA: (f64, f64) = (5e4, 1e6);
+/// Stiffest local value, Pa: beyond it a few thin stems would set everyone's time step.
+const LOCAL_MOST_PA: f64 = 2e6;
+/// Share of the solid from which a part is a major one.
+const MAJOR_SHARE: f64 = 0.02;
+/// A local value within this factor of the object's is not worth a difference.
+const NOTABLE: f64 = 1.05;
 
 /// The automatic stiffness of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct YoungAuto {
-    /// Of the whole object.
+    /// Of the whole object, Pa.
     pub value_pa: f64,
     /// Of each Gaussian: `value_pa`, or more where a slender part needs it.
     pub local: Vec<f32>,
@@ -24,31 +35,62 @@ pub struct YoungAuto {
     pub warnings: Vec<String>,
 }
 
-/// Chooses the stiffness from the Gaussians alone: not from a grid, a quality or the spec's gravity.
+/// Chooses the stiffness from the Gaussians alone: not from a solver's cell, a quality or the spec's
+/// gravity. Where they make no solid the softest value stands, and [`super::build`] says why.
 pub fn young_auto(gaussians: &Gaussians, ground_m: f32, density_kg_m3: f64) -> YoungAuto {
-    let value_pa = slenderest_pa(gaussians, ground_m, density_kg_m3).clamp(RANGE_PA.0, RANGE_PA.1);
-    YoungAuto { value_pa, local: vec![value_pa as f32; gaussians.len()], warnings: Vec::new() }
+    let Ok(Shape { density, solid, .. }) = shape(gaussians, ground_m) else {
+        return YoungAuto { value_pa: RANGE_PA.0, local: vec![RANGE_PA.0 as f32; gaussians.len()], warnings: Vec::new() };
+    };
+    let sections = Sections::find(&density.grid, &solid);
+    let weight = density_kg_m3 * CAPTURE_GRAVITY_M_S2;
+    let total_m3 = sections.volume_m3();
+    let mut needed_pa = 0.0f64;
+    let mut of_section = vec![0.0f64; sections.count()];
+    for cut in sections.cuts() {
+        let column = column_pa(weight, cut.height_m, cut.area_m2);
+        if cut.volume_m3 >= MAJOR_SHARE * total_m3 {
+            needed_pa = needed_pa.max(column);
+        }
+        for &section in &cut.sections {
+            of_section[section as usize] = column.max(legs_pa(weight, &cut, &sections, section));
+        }
+    }
+    let value_pa = needed_pa.clamp(RANGE_PA.0, RANGE_PA.1);
+    let needs: Vec<f64> = gaussians.mean.iter().map(|&p| sections.at(&density.grid, p).map_or(0.0, |s| of_section[s as usize])).collect();
+    let local = needs.iter().map(|&need| if need > NOTABLE * value_pa { need.min(LOCAL_MOST_PA) as f32 } else { value_pa as f32 }).collect();
+    YoungAuto { value_pa, local, warnings: warnings(value_pa, needed_pa, &needs) }
 }
 
-/// Largest bound over all horizontal cuts, the area of a cut taken as one round column; zero without a solid.
-fn slenderest_pa(gaussians: &Gaussians, ground_m: f32, density_kg_m3: f64) -> f64 {
-    let Ok(density) = density::rasterise(gaussians, ground_m, fill::CLOSING_SPACINGS) else { return 0.0 };
-    let grid = &density.grid;
-    let solid = fill::solid(grid, &density.occupied, density.spacing_m);
-    let voxel_m = f64::from(grid.voxel_m);
-    let areas: Vec<f64> = solid.chunks(grid.slab()).map(|slab| slab.iter().filter(|s| **s).count() as f64 * voxel_m * voxel_m).collect();
-    let volume: f64 = areas.iter().sum();
-    let mut above = 0.0;
-    let mut top = None;
-    let mut largest: f64 = 0.0;
-    for (z, area) in areas.iter().enumerate().rev() {
-        above += area;
-        if above < 0.01 * volume {
-            continue;
-        }
-        let height = (*top.get_or_insert(z) - z) as f64 * voxel_m;
-        let radius_squared = area.max(voxel_m * voxel_m) / std::f64::consts::PI;
-        largest = largest.max(SAFETY * 4.0 * density_kg_m3 * CAPTURE_GRAVITY_M_S2 * height.powi(3) / (7.84 * radius_squared));
+/// Greenhill's bound of a round column of this height and cut, with the safety factor, Pa.
+fn column_pa(weight_n_m3: f64, height_m: f64, area_m2: f64) -> f64 {
+    SAFETY * 4.0 * weight_n_m3 * height_m.powi(3) * PI / (7.84 * area_m2)
+}
+
+/// What one of several legs needs: the part's weight, shared by area, on a leg held at both ends that
+/// may sway (Euler: P = pi^2 E I / l^2 with I = A r^2 / 4), with the safety factor, Pa.
+fn legs_pa(weight_n_m3: f64, cut: &Cut, sections: &Sections, leg: u32) -> f64 {
+    if cut.sections.len() < 2 {
+        return 0.0;
     }
-    largest
+    let stress_pa = weight_n_m3 * cut.volume_m3 / cut.area_m2;
+    let radius_squared = sections.area_m2(leg) / PI;
+    SAFETY * stress_pa * 4.0 * sections.leg_length_m(leg).powi(2) / (PI * PI * radius_squared)
+}
+
+fn warnings(value_pa: f64, needed_pa: f64, needs: &[f64]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if needed_pa > value_pa {
+        warnings.push(format!(
+            "young_pa = \"auto\": to stand by itself with room to spare the object would need {needed_pa:.1e} Pa and gets {value_pa:.1e} Pa, the most that is chosen unasked"
+        ));
+    }
+    let stiffened = needs.iter().filter(|&&need| need > NOTABLE * value_pa).count();
+    if stiffened > 0 {
+        let most = needs.iter().copied().fold(0.0, f64::max).min(LOCAL_MOST_PA);
+        let share = 100.0 * stiffened as f64 / needs.len() as f64;
+        warnings.push(format!(
+            "young_pa = \"auto\": {value_pa:.1e} Pa, and up to {most:.1e} Pa in slender parts that need it to stand ({share:.1} % of the Gaussians)"
+        ));
+    }
+    warnings
 }
