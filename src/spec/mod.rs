@@ -29,4 +29,6 @@ pub use path::{LISTS, is_name, name_from_file};
 pub use types::*;
 
 #[cfg(test)]
+mod properties;
+#[cfg(test)]
 mod tests;
