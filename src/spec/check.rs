@@ -4,7 +4,7 @@
 use serde_json::{Map, Value};
 
 use super::canonical::number;
-use super::error::{SpecError, SpecErrorKind, show};
+use super::error::{SpecError, SpecErrorKind, nearest, show};
 use super::{later, limits, path};
 
 /// Checks structure, types and ranges of a whole spec.
@@ -16,6 +16,11 @@ pub(super) fn spec(value: &Value) -> Result<(), SpecError> {
         return Err(SpecError::new(SpecErrorKind::Newer, "format", message).allowed(format!("format {}, or a newer phystalk", limits::FORMAT)));
     }
     Walk { root: super::schema::spec() }.check(super::schema::spec(), value, &Place::default())
+}
+
+/// What a part of the schema allows, in words.
+pub(super) fn describe(schema: &Value) -> String {
+    Walk { root: super::schema::spec() }.describe(schema)
 }
 
 /// Where the walk is: as shown, with entries by name, and as a pattern, without them.
@@ -123,6 +128,7 @@ impl<'a> Walk<'a> {
             None => {
                 let mut error = SpecError::unknown(&place.shown, "key", key, known);
                 error.message = format!("{} = {}", error.message, show(value)).into();
+                error.nearest = error.nearest.or_else(|| elsewhere(key));
                 error
             }
         }
@@ -213,10 +219,10 @@ impl<'a> Walk<'a> {
                     let each = self.resolve(&resolved["items"]);
                     let length = schema.get(limits::MAX_NORM).or(resolved.get(limits::MAX_NORM)).and_then(Value::as_f64);
                     let range = match length {
-                        Some(most) => format!(", at most {} long", number(most)),
+                        Some(most) => format!(" of length at most {}", number(most)),
                         None => range(each).map(|range| format!(", each {range}")).unwrap_or_default(),
                     };
-                    return format!("a list of {count} numbers{range}");
+                    return format!("{}{range}", if count == 3 { "a vector of 3 numbers".to_owned() } else { format!("a list of {count} numbers") });
                 }
                 _ => "a list".to_owned(),
             },
@@ -228,6 +234,14 @@ impl<'a> Walk<'a> {
         };
         with_range(&sort, schema, resolved)
     }
+}
+
+/// A key like this one in another table, as a whole path.
+fn elsewhere(key: &str) -> Option<Box<str>> {
+    let paths = super::schema::paths();
+    let last = |path: &'static str| path.rsplit('.').next().unwrap_or(path);
+    let meant = nearest(key, paths.iter().map(|path| last(path)))?;
+    paths.iter().find(|path| last(path) == meant).map(|path| path.as_str().into())
 }
 
 /// Ranges of numbers, patterns of texts, lengths of vectors.

@@ -16,6 +16,14 @@ const MATERIALS: &[(&str, &[&str])] = &[
     ("liquids", &["liquid", "water", "honey", "lava", "viscosity_pa_s", "surface_tension_n_m", "solver", "gamma", "stiffness", "exponent"]),
 ];
 
+/// Everything to come, with the words that are refused for it.
+pub(super) fn all() -> impl Iterator<Item = (&'static str, String)> {
+    let materials = MATERIALS.iter().map(|(what, words)| (*what, words.join(", ")));
+    materials.chain(
+        KEYS.iter().chain(WORDS).map(|(place, name, what)| (*what, if place.is_empty() { (*name).to_owned() } else { format!("{place}.{name}") })),
+    )
+}
+
 /// Keys to come: where, which, what they mean.
 const KEYS: &[(&str, &str, &str)] = &[
     ("", "look", "looks that change over time"),

@@ -16,6 +16,7 @@ mod path;
 mod place;
 pub mod presets;
 mod read;
+mod reference;
 pub mod schema;
 mod spelling;
 mod types;
@@ -26,6 +27,7 @@ pub use diff::{Change, unit};
 pub use error::{SpecError, SpecErrorKind, nearest};
 pub use later::material as material_to_come;
 pub use path::{LISTS, is_name, name_from_file};
+pub use reference::markdown as reference_page;
 pub use types::*;
 
 #[cfg(test)]

@@ -264,6 +264,7 @@ fn edits_that_are_refused_say_why() {
         Edit::set("object[0].name", "x"),
         Edit::set("wrold.gravity_m_s2", "moon"),
         Edit::set("gravity", "moon"),
+        Edit::set("young_pa", 3e4),
         Edit::set("", 1),
         Edit::set("..", 1),
         Edit::set("time.fps.x", 1),
@@ -407,6 +408,12 @@ fn the_schemas_hold_the_ranges() {
     assert_eq!((&young["minimum"], &young["maximum"]), (&json!(1e2), &json!(1e12)));
     assert_eq!(spec["$defs"]["Object"]["properties"]["velocity_m_s"]["items"]["maximum"], json!(200.0));
     assert_eq!(spec["$defs"]["Output"]["properties"]["size"]["anyOf"][1]["items"]["minimum"], json!(16));
+    let paths = schema::paths();
+    for path in
+        ["seed", "object.NAME.material.young_pa", "world.ground.friction", "camera.eye_m", "collider.NAME.shape.box.size_m", "expect.NAME.that"]
+    {
+        assert!(paths.iter().any(|known| known == path), "{path} in {paths:?}");
+    }
     let ops: Vec<&Value> = schema::edit()["$defs"]["Edit"]["oneOf"].as_array().unwrap().iter().map(|op| &op["properties"]["op"]["const"]).collect();
     assert_eq!(ops, [&json!("set"), &json!("add"), &json!("remove")]);
 }

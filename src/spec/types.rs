@@ -199,7 +199,7 @@ pub struct Solver {
     pub cells_across: Auto<u32>,
 }
 
-/// An axis-aligned box in the captured pose, world metres.
+/// An axis-aligned box, world frame; what it picks of an object it picks in the captured pose.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxShape {
@@ -211,7 +211,7 @@ pub struct BoxShape {
     pub size_m: [f64; 3],
 }
 
-/// A sphere in the captured pose, world metres.
+/// A sphere, world frame; what it picks of an object it picks in the captured pose.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphereShape {
