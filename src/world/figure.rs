@@ -2,6 +2,7 @@
 
 use super::{Prepared, camera};
 use crate::gpu::{Gpu, GpuError, Recording};
+use crate::render::shadow::Shadow;
 use crate::render::{GroundLook, Picture, RenderOptions, Renderer, View};
 use crate::skin::{Bound, Skinner, Splats};
 use crate::spec::{Camera, Weights};
@@ -13,6 +14,7 @@ pub struct Figure {
     gpu: Gpu,
     splats: Splats,
     skinner: Skinner,
+    shadow: Shadow,
     renderer: Renderer,
     /// Motion of a frame that comes from the store.
     replayed: wgpu::Buffer,
@@ -25,9 +27,19 @@ impl Figure {
     pub fn new(gpu: &Gpu, prepared: &Prepared, bound: &Bound, rest_m: &[Vec3], weights: Weights) -> Result<Figure, GpuError> {
         let splats = Splats::new(gpu, &prepared.gaussians, prepared.world_from_sh, &prepared.object_of)?;
         let skinner = Skinner::new(gpu, &splats, bound, rest_m, weights)?;
-        let has_static = prepared.object_of.contains(&u32::MAX);
+        let (mut casters, mut receivers) = (Vec::new(), Vec::new());
+        for (index, (object, floater)) in (0u32..).zip(prepared.object_of.iter().zip(&prepared.floater)) {
+            match (*object, *floater) {
+                (u32::MAX, _) => receivers.push(index),
+                (_, false) => casters.push(index),
+                _ => {}
+            }
+        }
+        let has_static = !receivers.is_empty();
+        let shadow = Shadow::new(gpu, &splats, &casters, &receivers, (!has_static).then_some(prepared.ground_m as f32))?;
         Ok(Figure {
             skinner,
+            shadow,
             renderer: Renderer::new(gpu),
             replayed: gpu.storage::<[u32; 8]>("figure.replayed", rest_m.len())?,
             ground_m: prepared.ground_m as f32,
@@ -41,6 +53,7 @@ impl Figure {
     pub fn pose(&mut self, motion: &wgpu::Buffer) {
         let mut recording = Recording::default();
         self.skinner.record(motion, &mut recording);
+        self.shadow.record(&mut recording);
         self.gpu.submit(&recording);
     }
 
