@@ -1,16 +1,33 @@
 //! Arrays to bytes and back, for what the store keeps.
 
-use crate::store::{Entry, EntryWriter, StoreError};
+use crate::store::{Entry, EntryWriter, Store, StoreError};
 use bytemuck::Pod;
+
+/// An entry of the store. A damaged one, which the store has taken away by then, counts as absent.
+pub(super) fn find(store: &Store, stage: &str, key: &str) -> Result<Option<Entry>, StoreError> {
+    match store.get(stage, key) {
+        Err(StoreError::Damaged { path, why }) => {
+            tracing::warn!("{} is damaged ({why}) and is made anew", path.display());
+            Ok(None)
+        }
+        other => other,
+    }
+}
 
 /// Writes one array as a blob.
 pub(super) fn write<T: Pod>(entry: &EntryWriter, name: &str, values: &[T]) -> Result<(), StoreError> {
     entry.put(name, bytemuck::cast_slice(values))
 }
 
-/// Reads one array back; a blob of a wrong length reads as `None`, which callers treat as a miss.
+/// Reads one array back; a damaged blob or one of a wrong length reads as `None`, which callers treat as a miss.
 pub(super) fn read<T: Pod>(entry: &Entry, name: &str) -> Result<Option<Vec<T>>, StoreError> {
-    let bytes = entry.read(name)?;
+    let bytes = match entry.read(name) {
+        Err(StoreError::Damaged { path, why }) => {
+            tracing::warn!("{} is damaged ({why}) and is made anew", path.display());
+            return Ok(None);
+        }
+        other => other?,
+    };
     if bytes.len() % size_of::<T>() != 0 {
         return Ok(None);
     }

@@ -3,7 +3,7 @@
 use super::delivery::Delivery;
 use super::engine::{Engine, Ready, Report};
 use super::segments::{self, Kept, Segment, SegmentMeta, SolverTotals};
-use super::{Action, EngineError, RunOptions, StageName, summary};
+use super::{Action, EngineError, RunOptions, StageName, pack, summary};
 use crate::gpu::{Gpu, Readback};
 use crate::render::Picture;
 use crate::spec::Spec;
@@ -69,6 +69,9 @@ pub(super) fn run(
     for stage in &mut plan.stages {
         stage.seconds = seconds.get(&stage.stage).copied();
     }
+    let motion = ready.segments.iter().map(|s| ("motion", s.key.as_str()));
+    let made = [("scene", ready.keys.scene.as_str()), ("proxy", &ready.keys.proxy), ("bind", &ready.keys.bind), ("picture", &ready.picture)];
+    engine.store.pin("head", made.into_iter().chain(motion).filter(|(stage, key)| engine.store.contains(stage, key)))?;
     let metrics = summary::metrics(spec, &ready, &matter, &done.rows, &done.totals, &seconds, engine.device()?);
     Ok(Report { plan, metrics, camera: ready.resolved.camera, stopped: done.stopped, warnings })
 }
@@ -96,7 +99,7 @@ fn take_figure(engine: &mut Engine, spec: &Spec, ready: &Ready, bound: &crate::s
 
 /// Delivers pictures that the store has.
 fn replay_pictures(store: &Store, ready: &Ready, sink: &mut dyn Sink) -> Result<(), EngineError> {
-    let Some(entry) = store.get("picture", &ready.picture)? else { return Ok(()) };
+    let Some(entry) = pack::find(store, "picture", &ready.picture)? else { return Ok(()) };
     let bytes = entry.read("frames")?;
     let ends: Vec<usize> = entry.meta().get("ends").and_then(|v| serde_json::from_value(v.clone()).ok()).unwrap_or_default();
     let fps = entry.meta().get("fps").and_then(serde_json::Value::as_f64).unwrap_or(1.0);

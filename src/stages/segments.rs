@@ -4,7 +4,7 @@
 //! versions that agree until some moment share everything before it: an edit at 1.2 s goes on from
 //! the state at the end of the last common segment, and a longer duration appends.
 
-use super::{EngineError, keys};
+use super::{EngineError, keys, pack};
 use crate::spec::Spec;
 use crate::store::{Entry, Store};
 use crate::world::measure::Row;
@@ -90,9 +90,9 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// Motion of all its frames, one after another; `None` where it was not kept.
+    /// Motion of all its frames, one after another; `None` where it was not kept or is damaged.
     pub fn motion(&self) -> Result<Option<Vec<u8>>, EngineError> {
-        Ok(if self.meta.frame_bytes > 0 { Some(self.entry.read("motion")?) } else { None })
+        Ok(if self.meta.frame_bytes > 0 { pack::read(&self.entry, "motion")? } else { None })
     }
 
     /// The state at its last frame.
@@ -103,7 +103,7 @@ impl Kept {
 
 /// Looks a segment up; anything unreadable counts as absent.
 pub(super) fn get(store: &Store, segment: &Segment) -> Result<Option<Kept>, EngineError> {
-    let Some(entry) = store.get("motion", &segment.key)? else { return Ok(None) };
+    let Some(entry) = pack::find(store, "motion", &segment.key)? else { return Ok(None) };
     let frames = (segment.last - segment.first + 1) as usize;
     let meta = serde_json::from_value::<SegmentMeta>(entry.meta().clone()).ok().filter(|meta| meta.rows.len() == frames);
     Ok(meta.map(|meta| Kept { meta, entry }))

@@ -70,7 +70,7 @@ pub(super) fn scene(memory: &mut Memory, store: &Store, spec: &Spec, base: &Path
     {
         return Ok((key, Made { value: prepared.clone(), action: Action::Hit }));
     }
-    let kept = store.get("scene", &key)?.and_then(|entry| Some((axis(entry.meta().get("up")?)?, pack::read::<u8>(&entry, "floater").ok()??)));
+    let kept = pack::find(store, "scene", &key)?.and_then(|entry| Some((axis(entry.meta().get("up")?)?, pack::read::<u8>(&entry, "floater").ok()??)));
     let (action, pruned) = match kept {
         Some((up, floater)) if floater.len() == loaded.gaussians.len() => (Action::Hit, (up, floater)),
         _ => (Action::Run, prune(&loaded, spec)),
@@ -149,7 +149,7 @@ pub(super) fn solids(
     {
         return Ok(Made { value: solids.clone(), action: Action::Hit });
     }
-    let kept = match store.get("proxy", &keys.proxy)? {
+    let kept = match pack::find(store, "proxy", &keys.proxy)? {
         Some(entry) => read_solids(&entry)?.filter(|solids| solids.len() == spec.objects.len()),
         None => None,
     };
@@ -245,7 +245,7 @@ pub(super) fn bound(
         return Ok(Made { value: bound.clone(), action: Action::Hit });
     }
     let expected = prepared.gaussians.len();
-    let kept = match store.get("bind", &keys.bind)? {
+    let kept = match pack::find(store, "bind", &keys.bind)? {
         Some(entry) => match (pack::read::<u32>(&entry, "index")?, pack::read::<f32>(&entry, "weight")?, entry.meta().get("neighbours")) {
             (Some(index), Some(weight), Some(n)) => {
                 let neighbours = n.as_u64().unwrap_or(0) as u32;
