@@ -1,10 +1,12 @@
 //! The `phystalk` program: words become edits, edits make versions, versions become pictures.
 
-#![allow(dead_code, unused_imports)] // rooms open one after another
-
 mod cli;
+mod conversation;
 mod history;
+#[allow(dead_code)] // some of it serves the generated pages alone
 mod language;
+mod preview;
+mod tui;
 
 use std::process::ExitCode;
 

@@ -32,7 +32,7 @@ fn help_and_version_are_results() {
 
 #[test]
 fn schemas_are_json_schemas() {
-    for what in ["spec", "metrics"] {
+    for what in ["spec", "edit", "events", "metrics"] {
         let output = phystalk(&["schema", what]);
         assert_eq!(output.status.code(), Some(0));
         let schema: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

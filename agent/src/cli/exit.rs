@@ -32,6 +32,22 @@ pub enum Kind {
     Terminated,
 }
 
+/// Every kind, for turning a code back into one.
+const KINDS: [Kind; 12] = [
+    Kind::Pipe,
+    Kind::Other,
+    Kind::Usage,
+    Kind::Spec,
+    Kind::NoModel,
+    Kind::Device,
+    Kind::Unstable,
+    Kind::Store,
+    Kind::Expectation,
+    Kind::Bug,
+    Kind::Interrupted,
+    Kind::Terminated,
+];
+
 impl Kind {
     /// The process's exit code.
     pub fn code(self) -> u8 {
@@ -72,6 +88,14 @@ impl Failure {
         Failure { kind, message: String::new() }
     }
 
+    /// The end of a turn whose failure was already told; nothing where the code is 0.
+    pub fn from_code(code: u8) -> Result<(), Failure> {
+        match code {
+            0 => Ok(()),
+            code => Err(Failure::silent(KINDS.into_iter().find(|k| k.code() == code).unwrap_or(Kind::Other))),
+        }
+    }
+
     /// A failure of no special kind.
     pub fn other(message: impl Display) -> Failure {
         Failure::new(Kind::Other, message)
@@ -95,5 +119,72 @@ impl From<io::Error> for Failure {
 impl From<phystalk::gpu::GpuError> for Failure {
     fn from(error: phystalk::gpu::GpuError) -> Failure {
         Failure::new(Kind::Device, error)
+    }
+}
+
+impl From<phystalk::scene::SceneError> for Failure {
+    fn from(error: phystalk::scene::SceneError) -> Failure {
+        Failure::other(error)
+    }
+}
+
+impl From<phystalk::export::ExportError> for Failure {
+    fn from(error: phystalk::export::ExportError) -> Failure {
+        Failure::other(error)
+    }
+}
+
+impl From<phystalk::spec::SpecError> for Failure {
+    fn from(error: phystalk::spec::SpecError) -> Failure {
+        let kind = match error.kind {
+            phystalk::spec::SpecErrorKind::File => Kind::Other,
+            _ => Kind::Spec,
+        };
+        Failure::new(kind, error)
+    }
+}
+
+impl From<phystalk::store::StoreError> for Failure {
+    fn from(error: phystalk::store::StoreError) -> Failure {
+        Failure::new(Kind::Store, error)
+    }
+}
+
+impl From<phystalk::stages::EngineError> for Failure {
+    fn from(error: phystalk::stages::EngineError) -> Failure {
+        use phystalk::stages::EngineError as E;
+        match error {
+            E::Scene(error) => error.into(),
+            E::Spec(error) => error.into(),
+            E::Gpu(error) => error.into(),
+            E::Store(error) => error.into(),
+            E::Unstable(_) => Failure::new(Kind::Unstable, error),
+            E::Proxy { .. } | E::Empty { .. } | E::SceneChanged { .. } => Failure::other(error),
+        }
+    }
+}
+
+impl From<crate::history::HistoryError> for Failure {
+    fn from(error: crate::history::HistoryError) -> Failure {
+        use crate::history::HistoryError as E;
+        match error {
+            E::Store(error) => error.into(),
+            E::Spec(error) => error.into(),
+            E::BadName { .. } => Failure::new(Kind::Usage, error),
+            other => Failure::other(other),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_distinct_and_lead_back() {
+        for kind in KINDS {
+            let back = Failure::from_code(kind.code());
+            assert_eq!(back.err().map_or(Kind::Pipe, |f| f.kind), kind);
+        }
     }
 }

@@ -2,14 +2,29 @@
 
 mod completions;
 pub mod crash;
+mod diff;
 mod doctor;
 pub mod environment;
-mod exit;
+mod exec;
+pub mod exit;
 mod flags;
-mod output;
+mod golden;
+pub mod log;
+pub mod output;
+mod plan;
+mod progress;
+mod repl;
+mod run;
+mod scene;
 mod schema;
-mod signals;
+mod setup;
+mod show;
+pub mod signals;
+mod still;
 mod store;
+mod text;
+mod undo;
+mod view;
 
 use clap::{Parser, Subcommand};
 use exit::{Failure, Kind};
@@ -18,12 +33,14 @@ use std::process::ExitCode;
 
 /// Talk to a 3D Gaussian Splatting scene, and physics answers.
 #[derive(Debug, Parser)]
-#[command(name = "phystalk", version, propagate_version = true, max_term_width = 100, after_help = EXIT_CODES, arg_required_else_help = true)]
+#[command(name = "phystalk", version, max_term_width = 100, after_help = EXIT_CODES)]
 struct Cli {
     #[command(flatten)]
     flags: Flags,
+    #[command(flatten)]
+    repl: repl::Arguments,
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 ok · 1 failed · 2 command line · 3 spec or --set · 4 no model · 6 no GPU adapter · 7 not stable · \
@@ -31,6 +48,30 @@ const EXIT_CODES: &str = "Exit codes: 0 ok · 1 failed · 2 command line · 3 sp
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Say what should happen, without a terminal: one turn for each -p
+    Exec(exec::Arguments),
+    /// Run a spec, no language
+    Run(run::Arguments),
+    /// Which stages would run, which are in the store, and why
+    Plan(plan::Arguments),
+    /// Versions of a session
+    Log,
+    /// One version, whole
+    Show(show::Arguments),
+    /// What two versions or specs differ in
+    Diff(diff::Arguments),
+    /// Go back by a version, losing nothing
+    Undo(undo::Arguments),
+    /// Go forward again
+    Redo(undo::Arguments),
+    /// What a splat file holds
+    Scene(scene::Arguments),
+    /// Write a splat file in another format
+    Convert(scene::ConvertArguments),
+    /// One picture of a scene in its own frame
+    Still(still::Arguments),
+    /// Compare frames with expected pictures
+    Golden(golden::Arguments),
     /// What this machine offers, and what to do where something is missing
     Doctor,
     /// JSON Schema of a file or stream that other programs may rely on
@@ -41,6 +82,7 @@ enum Command {
 
 /// Parses the command line, runs the command, says what failed; the result is the exit code.
 pub fn main() -> ExitCode {
+    std::sync::LazyLock::force(&text::STARTED);
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
@@ -65,11 +107,31 @@ pub fn main() -> ExitCode {
 }
 
 fn run(cli: &Cli) -> Result<(), Failure> {
-    match &cli.command {
-        Command::Doctor => doctor::run(&cli.flags),
+    let flags = &cli.flags;
+    let Some(command) = &cli.command else { return repl::run(&cli.repl, flags) };
+    match command {
+        Command::Exec(arguments) => exec::run(arguments, flags),
+        Command::Run(arguments) => run::run(arguments, flags),
+        Command::Plan(arguments) => plan::run(arguments, flags),
+        Command::Log => log::run(flags),
+        Command::Show(arguments) => show::run(arguments, flags),
+        Command::Diff(arguments) => diff::run(arguments, flags),
+        Command::Undo(arguments) => undo::run(arguments, undo::Way::Back, flags),
+        Command::Redo(arguments) => undo::run(arguments, undo::Way::Forward, flags),
+        Command::Scene(arguments) => scene::run(arguments, flags),
+        Command::Convert(arguments) => scene::convert(arguments, flags),
+        Command::Still(arguments) => still::run(arguments, flags),
+        Command::Golden(arguments) => golden::run(arguments, flags),
+        Command::Doctor => doctor::run(flags),
         Command::Schema(arguments) => schema::run(arguments),
         Command::Completions(arguments) => completions::run(arguments),
     }
+}
+
+/// Names of all commands, for suggestions.
+fn command_names() -> Vec<String> {
+    use clap::CommandFactory;
+    Cli::command().get_subcommands().map(|c| c.get_name().to_owned()).collect()
 }
 
 /// Sends the library's log to standard error, only where `PHYSTALK_LOG` asks for it (as `phystalk=debug`).

@@ -2,6 +2,7 @@
 
 use super::exit::Failure;
 use super::output;
+use crate::conversation::Line;
 use clap::{Args, ValueEnum};
 use schemars::schema_for;
 
@@ -15,14 +16,20 @@ pub struct Arguments {
 enum What {
     /// A spec, as TOML or JSON
     Spec,
+    /// One change of a spec
+    Edit,
+    /// One line of `exec --json`
+    Events,
     /// metrics.json
     Metrics,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let schema = match arguments.what {
-        What::Spec => schema_for!(phystalk::spec::Spec),
-        What::Metrics => schema_for!(phystalk::stages::Metrics),
+        What::Spec => phystalk::spec::schema::spec().clone(),
+        What::Edit => phystalk::spec::schema::edit().clone(),
+        What::Events => schema_for!(Line).to_value(),
+        What::Metrics => schema_for!(phystalk::stages::Metrics).to_value(),
     };
     output::line(serde_json::to_string_pretty(&schema).map_err(Failure::other)?)
 }

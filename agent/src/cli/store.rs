@@ -14,11 +14,6 @@ pub fn find(flags: &Flags) -> Option<PathBuf> {
     }
 }
 
-/// The store to use: the one found, else a new one here.
-pub fn choose(flags: &Flags) -> PathBuf {
-    find(flags).or_else(|| flags.store.clone()).unwrap_or_else(|| PathBuf::from(FOLDER))
-}
-
 fn above(folder: &Path) -> Option<PathBuf> {
     folder.ancestors().map(|a| a.join(FOLDER)).find(|p| p.is_dir())
 }

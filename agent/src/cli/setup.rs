@@ -1,0 +1,120 @@
+//! From flags to a store, a spec, a session, a conversation.
+
+use super::exit::{Failure, Kind};
+use super::flags::Flags;
+use crate::conversation::Conversation;
+use crate::history::Session;
+use phystalk::spec::{Edit, Spec};
+use phystalk::stages::Engine;
+use phystalk::store::Store;
+use std::path::{Path, PathBuf};
+
+/// The store that the flags name, made where there is none.
+pub fn store(flags: &Flags) -> Result<Store, Failure> {
+    let here = std::env::current_dir().map_err(|e| Failure::file("use", Path::new("."), &e))?;
+    Ok(Store::open(flags.store.as_deref(), &here)?)
+}
+
+/// The engine of this process.
+pub fn engine(flags: &Flags, store: Store) -> Engine {
+    Engine::new(store, flags.device_request())
+}
+
+/// The `--set` flags as edits.
+pub fn edits(flags: &Flags) -> Result<Vec<Edit>, Failure> {
+    flags.set.iter().map(|text| Ok(Edit::parse_set(text)?)).collect()
+}
+
+/// A spec with the `--set` flags applied.
+pub fn adjusted(spec: Spec, flags: &Flags) -> Result<Spec, Failure> {
+    Ok(spec.apply(&edits(flags)?)?)
+}
+
+/// The spec that a scene starts with: defaults, one elastic object; a `.toml` or `.json` is read as
+/// a spec, and `builtin:demo` is the built-in scene.
+pub fn spec_of(scene: &str, flags: &Flags) -> Result<Spec, Failure> {
+    let path = Path::new(scene);
+    let spec = if is_spec(scene) {
+        Spec::read(path)?
+    } else {
+        let path = std::path::absolute(path).map_err(|e| Failure::file("find", path, &e))?;
+        let mut spec = Spec::of_scene(&path.to_string_lossy());
+        spec.scene.blake3 = digest(&path);
+        spec
+    };
+    adjusted(spec, flags)
+}
+
+/// Whether an argument names a spec rather than a version or a splat file.
+pub fn is_spec(argument: &str) -> bool {
+    Path::new(argument).extension().is_some_and(|e| e == "toml" || e == "json")
+}
+
+/// BLAKE3 of a file; none where it cannot be read, which reading the scene will explain.
+fn digest(path: &Path) -> Option<String> {
+    let file = std::fs::File::open(path).ok()?;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(file).ok()?;
+    Some(hasher.finalize().to_hex().to_string())
+}
+
+/// The last session, or the one that `--session` names.
+pub fn session(flags: &Flags, store: &Store) -> Result<Session, Failure> {
+    Ok(Session::open(store, flags.session.as_deref())?)
+}
+
+/// A conversation about a scene: goes on with a session where the flags say so, else starts one
+/// whose scene was read first, so that a wrong path leaves nothing behind.
+pub fn converse(scene: Option<&str>, flags: &Flags, out: impl Fn(&str) -> Option<PathBuf>) -> Result<Conversation, Failure> {
+    let store = store(flags)?;
+    let known = flags.session.as_ref().is_some_and(|name| Session::list(&store).is_ok_and(|names| names.contains(name)));
+    let mut engine = engine(flags, store.clone());
+    let session = match scene {
+        _ if flags.resume || known => resumed(scene, flags, &store)?,
+        Some(scene) => {
+            let spec = spec_of(scene, flags)?;
+            engine.facts(&spec, Path::new(""), &flags.run_options())?;
+            Session::start(&store, flags.session.as_deref(), spec)?
+        }
+        None => return Err(Failure::new(Kind::Usage, "no scene: give a splat file (.ply or .splat), a spec (.toml), or --continue")),
+    };
+    let out = out(session.name());
+    Ok(Conversation::new(engine, session, flags.run_options(), out, flags.cpu))
+}
+
+/// An old session, which must be about the scene that was named, if one was.
+fn resumed(scene: Option<&str>, flags: &Flags, store: &Store) -> Result<Session, Failure> {
+    let session = session(flags, store)?;
+    let asked = scene.map(|s| spec_of(s, &Flags::default())).transpose()?;
+    let same = |asked: &Spec| {
+        asked.scene.blake3 == session.base().scene.blake3 && (asked.scene.blake3.is_some() || asked.scene.file == session.base().scene.file)
+    };
+    match asked {
+        Some(asked) if !same(&asked) => Err(Failure::new(
+            Kind::Usage,
+            format!(
+                "session {} is about {}, not {}; leave the scene out to go on with it, or leave --continue and --session out to start another",
+                session.name(),
+                session.base().scene.file,
+                asked.scene.file
+            ),
+        )),
+        _ => Ok(session),
+    }
+}
+
+/// Where pictures of a session go unless `--out` says otherwise.
+pub fn default_out(flags: &Flags, session: &str) -> PathBuf {
+    flags.out.clone().unwrap_or_else(|| Path::new("phystalk-out").join(session))
+}
+
+/// A spec by file or by version of the session.
+pub fn spec_by_name(name: &str, flags: &Flags) -> Result<(Spec, String), Failure> {
+    if is_spec(name) {
+        return Ok((spec_of(name, flags)?, name.to_owned()));
+    }
+    let store = store(flags)?;
+    let session = session(flags, &store)?;
+    let version = session.find(name)?.name.clone();
+    Ok((adjusted(session.spec_of(&version)?, flags)?, version))
+}

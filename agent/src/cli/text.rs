@@ -1,0 +1,140 @@
+//! Views of a conversation's events for people and for programs.
+
+use super::exit::Kind;
+use super::output;
+use super::progress::Bar;
+use crate::conversation::{Event, Lines, Listener, duration, plan_line};
+use phystalk::{Frame, Stop};
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+use std::time::Instant;
+
+/// When the process started, as near as it can tell.
+pub static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
+
+/// Events as lines of text: results on standard output, progress and warnings on standard error.
+pub struct Teller {
+    quiet: bool,
+    stop: Stop,
+    bar: Bar,
+    folder: Option<PathBuf>,
+    frames: u32,
+    pictured: bool,
+    /// The reader of standard output went away.
+    pub broken: bool,
+}
+
+impl Teller {
+    /// A teller; a broken pipe raises `stop`.
+    pub fn new(quiet: bool, stop: &Stop) -> Teller {
+        Teller { quiet, stop: stop.clone(), bar: Bar::new(quiet), folder: None, frames: 0, pictured: false, broken: false }
+    }
+
+    /// Prints one line of result above the progress.
+    pub fn tell(&mut self, text: impl std::fmt::Display) {
+        self.bar.clear();
+        if let Err(failure) = output::line(text) {
+            self.broken |= failure.kind == Kind::Pipe;
+            self.stop.raise();
+        }
+    }
+
+    fn aside(&mut self, text: String) {
+        if !self.quiet {
+            self.tell(text);
+        }
+    }
+
+    fn warn(&mut self, text: String) {
+        self.bar.clear();
+        output::note(text);
+    }
+
+    fn frame_written(&mut self, path: &Path) {
+        self.frames += 1;
+        if self.folder.is_none() {
+            self.folder = path.parent().and_then(Path::parent).map(Path::to_path_buf);
+        }
+    }
+
+    fn ended(&mut self) {
+        self.bar.clear();
+        if let Some(folder) = self.folder.take() {
+            let pictures = if self.frames > 0 { format!(" ({} frames, contact.png, preview.webp)", self.frames) } else { String::new() };
+            self.tell(format!("  -> {}{pictures}", folder.display()));
+        }
+        self.frames = 0;
+    }
+}
+
+impl Listener for Teller {
+    fn event(&mut self, event: Event) {
+        match event {
+            Event::SessionStarted { session, scene, .. } => self.aside(format!("session {session}: {scene}")),
+            Event::TurnStarted { text, .. } => self.aside(format!("\n> {text}")),
+            Event::Message { text } => self.tell(format!("  {text}")),
+            Event::SpecEdited { from, to, changes, .. } => {
+                self.tell(format!("{to}{}", from.map(|f| format!(" <- {f}")).unwrap_or_default()));
+                changes.into_iter().for_each(|c| self.aside(format!("    {c}")));
+            }
+            Event::PlanReady { stages } => self.aside(format!("  {}", plan_line(&stages))),
+            Event::StageStarted { stage } => self.bar.stage(&stage),
+            Event::StageProgress { stage, done, total, seconds_left } => self.bar.progress(&stage, done, total, seconds_left),
+            Event::StageCompleted { stage, action, seconds } => self.bar.completed(&stage, &action, seconds),
+            Event::FrameReady { path, .. } => self.frame_written(&path),
+            Event::MetricsReady { path } => self.folder = path.parent().map(Path::to_path_buf),
+            Event::Warning { text } => self.warn(format!("warning: {text}")),
+            Event::NotUnderstood { words } => self.warn(format!("not understood: {}", words.join(", "))),
+            Event::Usage { .. } => {}
+            Event::TurnCompleted { .. } => {
+                let summary = self.bar.summary();
+                if let Some(summary) = summary {
+                    self.aside(format!("  {summary}"));
+                }
+                self.ended();
+            }
+            Event::TurnFailed { error, .. } => {
+                self.bar.clear();
+                output::error(&error);
+                self.ended();
+            }
+            Event::TurnCancelled { .. } => {
+                self.warn("stopped; what was done is kept".to_owned());
+                self.ended();
+            }
+        }
+    }
+
+    fn picture(&mut self, _: &Frame) {
+        if !std::mem::replace(&mut self.pictured, true) {
+            let seconds = STARTED.elapsed().as_secs_f64();
+            self.aside(format!("  first picture {} after the start of the program", duration(seconds)));
+        }
+    }
+}
+
+/// Events as JSON Lines on standard output.
+pub struct JsonLines {
+    lines: Lines,
+    stop: Stop,
+    /// The reader of standard output went away.
+    pub broken: bool,
+}
+
+impl JsonLines {
+    /// A stream that starts at 0; a broken pipe raises `stop`.
+    pub fn new(stop: &Stop) -> JsonLines {
+        JsonLines { lines: Lines::default(), stop: stop.clone(), broken: false }
+    }
+}
+
+impl Listener for JsonLines {
+    fn event(&mut self, event: Event) {
+        let line = self.lines.line(event);
+        let written = serde_json::to_string(&line).map_err(super::exit::Failure::other).and_then(output::line);
+        if let Err(failure) = written {
+            self.broken |= failure.kind == Kind::Pipe;
+            self.stop.raise();
+        }
+    }
+}

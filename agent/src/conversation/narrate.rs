@@ -1,0 +1,115 @@
+//! What happened, in words: plans, durations, what a run showed.
+
+use phystalk::stages::{Action, Metrics, ObjectMetrics, PlannedStage};
+
+/// Seconds as people say them.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.0995 => format!("{:.0} ms", s.max(0.0) * 1000.0),
+        s if s < 9.95 => format!("{s:.1} s"),
+        s if s < 99.5 => format!("{s:.0} s"),
+        s => format!("{}:{:02} min", (s / 60.0) as u64, s as u64 % 60),
+    }
+}
+
+fn verb(stage: &PlannedStage) -> String {
+    match (stage.action, stage.from_s) {
+        (Action::Run, _) => "run".to_owned(),
+        (Action::Hit, _) => "hit".to_owned(),
+        (Action::Skip, _) => "skip".to_owned(),
+        (Action::Resume, Some(from)) => format!("resume from {from:.2} s"),
+        (Action::Resume, None) => "resume".to_owned(),
+    }
+}
+
+/// A plan in one line: what runs, and that the rest is in the store.
+pub fn plan_line(stages: &[PlannedStage]) -> String {
+    let works = |s: &&PlannedStage| matches!(s.action, Action::Run | Action::Resume);
+    let describe = |s: &PlannedStage| match s.action {
+        Action::Resume => format!("{} ({})", s.stage.as_str(), verb(s)),
+        _ => s.stage.as_str().to_owned(),
+    };
+    let names: Vec<String> = stages.iter().filter(works).map(describe).collect();
+    let Some(first) = stages.iter().find(works) else { return "plan: nothing to run, everything is in the store".to_owned() };
+    format!("plan: {} ({})", names.join(", "), first.reason)
+}
+
+/// A plan as rows: stage, what happens, what it took, why.
+pub fn plan_table(stages: &[PlannedStage]) -> Vec<Vec<String>> {
+    let row = |s: &PlannedStage| {
+        let seconds = s.seconds.filter(|_| s.action != Action::Skip).map(duration).unwrap_or_default();
+        vec![s.stage.as_str().to_owned(), verb(s), seconds, s.reason.clone()]
+    };
+    stages.iter().map(row).collect()
+}
+
+/// What the objects did, one sentence each.
+pub fn outcome(metrics: &Metrics) -> Vec<String> {
+    metrics.objects.iter().map(|(name, object)| sentence(name, object, metrics)).collect()
+}
+
+fn sentence(name: &str, object: &ObjectMetrics, metrics: &Metrics) -> String {
+    let height = match (object.high_m.first(), object.low_m.first()) {
+        (Some(high), Some(low)) => (high - low).max(1e-6),
+        _ => 1.0,
+    };
+    let mut parts = Vec::new();
+    let (apex, travel) = (object.apex_m(), object.travel_m());
+    let aside = travel[0].hypot(travel[1]);
+    if apex > 0.01 * height {
+        parts.push(format!("rises {}", length(apex)));
+    }
+    if object.drop_m() > 0.01 * height {
+        parts.push(format!("falls {}", length(object.drop_m())));
+    }
+    if aside > 0.01 * height {
+        parts.push(format!("ends {} away", length(aside)));
+    }
+    let stretch = object.largest_stretch();
+    if stretch > 1.05 {
+        parts.push(format!("stretches to {:.0} %", stretch * 100.0));
+    }
+    if parts.is_empty() {
+        parts.push("stays where it is".to_owned());
+    } else {
+        match object.settle_s(metrics.fps) {
+            Some(settled) => parts.push(format!("is at rest from {settled:.2} s")),
+            None => parts.push("still moves at the end".to_owned()),
+        }
+    }
+    format!("{name}: {}", parts.join(", "))
+}
+
+fn length(metres: f64) -> String {
+    if metres < 0.995 { format!("{:.0} cm", metres * 100.0) } else { format!("{metres:.2} m") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use phystalk::stages::StageName;
+
+    #[test]
+    fn durations() {
+        let said: Vec<String> = [0.004, 0.5, 2.34, 61.0, 125.0].into_iter().map(duration).collect();
+        assert_eq!(said, ["4 ms", "0.5 s", "2.3 s", "61 s", "2:05 min"]);
+    }
+
+    fn stage(stage: StageName, action: Action, from_s: Option<f64>, reason: &str) -> PlannedStage {
+        PlannedStage { stage, key: String::new(), action, from_s, reason: reason.to_owned(), seconds: None }
+    }
+
+    #[test]
+    fn a_plan_says_what_runs_and_why() {
+        let hit = |s| stage(s, Action::Hit, None, "in the store");
+        let all = [hit(StageName::Scene), hit(StageName::Proxy)];
+        assert_eq!(plan_line(&all), "plan: nothing to run, everything is in the store");
+        let resumed = [
+            hit(StageName::Bind),
+            stage(StageName::Simulate, Action::Resume, Some(0.5), "event push changed"),
+            stage(StageName::Picture, Action::Run, None, "simulate runs"),
+        ];
+        assert_eq!(plan_line(&resumed), "plan: simulate (resume from 0.50 s), picture (event push changed)");
+        assert_eq!(plan_table(&resumed)[1], ["simulate", "resume from 0.50 s", "", "event push changed"]);
+    }
+}

@@ -1,0 +1,371 @@
+//! One turn: understand, apply, keep, plan, run, measure. Nothing else changes a spec.
+
+use super::files::Files;
+use super::observer::Observer;
+use super::{Event, Listener, narrate};
+use crate::cli::exit::{Failure, Kind};
+use crate::history::{Session, Version};
+use crate::language::{self, Reply, VersionRef};
+use phystalk::Stop;
+use phystalk::gpu::Tier;
+use phystalk::spec::{Camera, Edit, Spec};
+use phystalk::stages::{Engine, Metrics, Plan, Report, RunOptions};
+use std::path::{Path, PathBuf};
+
+/// A session that is talked to.
+pub struct Conversation {
+    engine: Engine,
+    session: Session,
+    options: RunOptions,
+    /// Where files go; none where pictures are only looked at.
+    out: Option<PathBuf>,
+    /// What `"auto"` came to in the newest run.
+    resolved: serde_json::Map<String, serde_json::Value>,
+    turns: u32,
+    asked_for_cpu: bool,
+    said_device: bool,
+}
+
+/// How a turn ended.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// As the process would exit with it.
+    pub exit_code: u8,
+    /// The version it made.
+    pub version: Option<String>,
+}
+
+impl Conversation {
+    /// Goes on with a session.
+    pub fn new(engine: Engine, session: Session, options: RunOptions, out: Option<PathBuf>, asked_for_cpu: bool) -> Conversation {
+        let resolved = session.head().and_then(|v| v.resolved.as_ref()?.as_object().cloned()).unwrap_or_default();
+        let options = RunOptions { camera: session.camera(), ..options };
+        Conversation { engine, session, options, out, resolved, turns: 0, asked_for_cpu, said_device: false }
+    }
+
+    /// Its session.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// Announces the session.
+    pub fn open(&self, listener: &mut dyn Listener) {
+        listener.event(Event::SessionStarted {
+            session: self.session.name().to_owned(),
+            store: self.engine.store().dir().to_owned(),
+            scene: self.session.spec().scene.file.clone(),
+        });
+        if self.session.dropped_torn_line() {
+            listener.event(Event::Warning { text: "an operation that was not finished when the program last ended was dropped".to_owned() });
+        }
+    }
+
+    /// A turn in words.
+    pub fn say(&mut self, words: &str, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
+        self.begin(words, listener);
+        let result = self.understand_and_run(words, listener, stop);
+        end(result, listener)
+    }
+
+    /// A turn of edits that were given as edits.
+    pub fn edit(&mut self, words: &str, edits: Vec<Edit>, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
+        self.begin(words, listener);
+        let result = self.accept(words, edits, listener, stop);
+        end(result, listener)
+    }
+
+    /// A turn that goes back by some versions.
+    pub fn undo(&mut self, steps: u32, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
+        self.travel("undo", listener, stop, |session, words| Ok(session.undo(words, steps)?))
+    }
+
+    /// A turn that goes forward again.
+    pub fn redo(&mut self, steps: u32, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
+        self.travel("redo", listener, stop, |session, words| Ok(session.redo(words, steps)?))
+    }
+
+    fn travel(
+        &mut self,
+        words: &str,
+        listener: &mut dyn Listener,
+        stop: &Stop,
+        go: impl Fn(&mut Session, &str) -> Result<Version, Failure>,
+    ) -> Outcome {
+        self.begin(words, listener);
+        let before = self.session.spec().clone();
+        let from = self.head_name();
+        let result = go(&mut self.session, words).and_then(|version| self.made(version, from, &before, listener, stop));
+        end(result, listener)
+    }
+
+    /// Runs the newest version as it is, without a turn of its own: for a spec that was just taken over.
+    pub fn run_head(&mut self, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
+        self.turns += 1;
+        let result = match self.session.head().cloned() {
+            Some(version) => {
+                listener.event(Event::TurnStarted { turn: self.turns, text: version.words.clone() });
+                listener.event(Event::SpecEdited { from: None, to: version.name.clone(), edits: Vec::new(), changes: Vec::new() });
+                self.run(&version, None, listener, stop)
+            }
+            None => Err(Failure::other("this session has no version yet")),
+        };
+        end(result, listener)
+    }
+
+    /// What would run now.
+    pub fn plan(&mut self) -> Result<Plan, Failure> {
+        Ok(self.engine.plan(&self.session.spec().clone(), Path::new(""), &self.options, None)?)
+    }
+
+    /// The camera that the current version resolves to.
+    pub fn camera(&mut self) -> Result<Camera, Failure> {
+        Ok(self.engine.facts(&self.session.spec().clone(), Path::new(""), &self.options)?.camera)
+    }
+
+    /// Delivers one frame of the current version in full size, out of the store where it is there.
+    pub fn frame(&mut self, index: u32, stop: &Stop) -> Result<Option<phystalk::Frame>, Failure> {
+        let mut catcher = Catcher { index, frame: None };
+        let spec = self.session.spec().clone();
+        self.engine.run(&spec, Path::new(""), &self.options, None, &mut catcher, stop)?;
+        Ok(catcher.frame)
+    }
+
+    /// The device's name, once it is open.
+    pub fn device_name(&mut self) -> Result<String, Failure> {
+        Ok(self.engine.device()?.name().to_owned())
+    }
+
+    fn begin(&mut self, words: &str, listener: &mut dyn Listener) {
+        self.turns += 1;
+        listener.event(Event::TurnStarted { turn: self.turns, text: words.to_owned() });
+    }
+
+    /// The spec that the newest version was made from: the scene as found before the first.
+    fn before_head(&self) -> Option<Spec> {
+        match self.session.head()?.parent.as_deref() {
+            Some(parent) => Some(self.session.find(parent).ok()?.spec.clone()),
+            None => Some(self.session.base().clone()),
+        }
+    }
+
+    fn head_name(&self) -> Option<String> {
+        self.session.head().map(|v| v.name.clone())
+    }
+
+    fn understand_and_run(&mut self, words: &str, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
+        let spec = self.session.spec().clone();
+        let facts = self.engine.facts(&spec, Path::new(""), &self.options)?;
+        let previous = self.before_head();
+        let context = language::Context { spec: &spec, facts: &facts, resolved: &self.resolved, previous_spec: previous.as_ref() };
+        let reply = language::understand(words, &context);
+        listener.event(Event::Usage { provider: "phrasebook".to_owned(), input_tokens: 0, output_tokens: 0 });
+        let from = self.head_name();
+        match reply {
+            Reply::Edits { edits, gloss, not_understood } => {
+                gloss.into_iter().for_each(|text| listener.event(Event::Message { text }));
+                say_not_understood(not_understood, listener);
+                self.accept(words, edits, listener, stop).map_err(as_refusal)
+            }
+            Reply::Undo(steps) => {
+                let version = self.session.undo(words, steps)?;
+                self.made(version, from, &spec, listener, stop)
+            }
+            Reply::Redo(steps) => {
+                let version = self.session.redo(words, steps)?;
+                self.made(version, from, &spec, listener, stop)
+            }
+            Reply::BackTo(reference) => {
+                let version = self.session.back_to(words, &version_name(reference))?;
+                self.made(version, from, &spec, listener, stop)
+            }
+            Reply::Refused { reason, not_understood } => {
+                say_not_understood(not_understood, listener);
+                Err(Failure::other(reason))
+            }
+        }
+    }
+
+    /// Applies edits, keeps the version, runs it. Edits that change nothing make no version, but the
+    /// first turn of a session shows the scene as it is.
+    fn accept(&mut self, words: &str, edits: Vec<Edit>, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
+        let before = self.session.spec().clone();
+        let after = before.apply(&edits)?;
+        let from = self.head_name();
+        if from.is_some() && before.diff(&after).is_empty() {
+            listener.event(Event::Message { text: "nothing to change: it is so already".to_owned() });
+            return Ok(Ended::Completed(None));
+        }
+        let version = self.session.commit(words, &edits, &after)?;
+        self.made(version, from, &before, listener, stop)
+    }
+
+    /// Announces a version that is in the store, and runs it.
+    fn made(&mut self, version: Version, from: Option<String>, before: &Spec, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
+        let edits = version.edits.iter().filter_map(|e| serde_json::to_value(e).ok()).collect();
+        let mut changes: Vec<String> = before.diff(self.session.spec()).iter().map(ToString::to_string).collect();
+        if !version.note.is_empty() {
+            changes.insert(0, version.note.clone());
+        }
+        let previous = from.is_some().then_some(before);
+        listener.event(Event::SpecEdited { from, to: version.name.clone(), edits, changes });
+        self.run(&version, previous, listener, stop)
+    }
+
+    fn run(&mut self, version: &Version, previous: Option<&Spec>, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
+        let spec = self.session.spec().clone();
+        let plan = self.engine.plan(&spec, Path::new(""), &self.options, previous)?;
+        self.say_device(listener)?;
+        listener.event(Event::PlanReady { stages: plan.stages.clone() });
+        let mut files = match &self.out {
+            Some(out) => Some(Files::create(&out.join(&version.name), spec.time.fps)?),
+            None => None,
+        };
+        if let Some(files) = &files {
+            spec.write(&files.path("spec.toml"))?;
+            files.json("plan.json", &plan)?;
+        }
+        listener.film(&version.name);
+        let mut observer = Observer::new(listener, files.as_mut(), &plan.stages);
+        let report = self.engine.run(&spec, Path::new(""), &self.options, previous, &mut observer, stop);
+        let report = match (report, files) {
+            (Ok(report), files) => {
+                let mut metrics = report.metrics.clone();
+                metrics.version.clone_from(&version.name);
+                self.finish_files(files, &report.plan, &metrics, listener)?;
+                Report { metrics, ..report }
+            }
+            (Err(error), files) => {
+                // What was drawn until then stays, contact sheet included.
+                files.map(Files::finish).transpose()?;
+                return Err(error.into());
+            }
+        };
+        for stage in &report.plan.stages {
+            listener.event(Event::StageCompleted {
+                stage: stage.stage.as_str().to_owned(),
+                action: serde_json::to_value(stage.action).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default(),
+                seconds: stage.seconds.unwrap_or(0.0),
+            });
+        }
+        self.keep_camera(&report)?;
+        self.resolved.clone_from(&report.metrics.resolved);
+        self.session.keep_resolved(&version.name, serde_json::Value::Object(self.resolved.clone()))?;
+        if report.stopped {
+            return Ok(Ended::Cancelled(version.name.clone()));
+        }
+        narrate::outcome(&report.metrics).into_iter().for_each(|text| listener.event(Event::Message { text }));
+        judge(&report.metrics, &version.name)
+    }
+
+    fn finish_files(&self, files: Option<Files>, plan: &Plan, metrics: &Metrics, listener: &mut dyn Listener) -> Result<(), Failure> {
+        let Some(files) = files else { return Ok(()) };
+        files.json("plan.json", plan)?;
+        let path = files.json("metrics.json", metrics)?;
+        for w in files.finish()? {
+            listener.event(Event::FrameReady { path: w.path, index: w.index, time_s: w.time_s });
+        }
+        listener.event(Event::MetricsReady { path });
+        Ok(())
+    }
+
+    /// The first version's camera is the session's, so that versions compare.
+    fn keep_camera(&mut self, report: &Report) -> Result<(), Failure> {
+        if self.options.camera.is_none() {
+            self.session.keep_camera(&report.camera)?;
+            self.options.camera = Some(report.camera);
+        }
+        Ok(())
+    }
+
+    /// Says once where it runs, if that is not a GPU and nobody asked for that.
+    fn say_device(&mut self, listener: &mut dyn Listener) -> Result<(), Failure> {
+        let gpu = self.engine.device()?;
+        if gpu.tier == Tier::Cpu && !self.asked_for_cpu && !self.said_device {
+            let quality = if self.options.quality.is_none() { ", at draft quality" } else { "" };
+            listener.event(Event::Warning { text: format!("no GPU was found: running on the CPU ({}){quality}", gpu.name()) });
+        }
+        self.said_device = true;
+        Ok(())
+    }
+}
+
+fn version_name(reference: VersionRef) -> String {
+    match reference {
+        VersionRef::First => "v1".to_owned(),
+        VersionRef::Number(number) => format!("v{number}"),
+    }
+}
+
+/// How a turn that did not fail ended.
+enum Ended {
+    Completed(Option<String>),
+    Cancelled(String),
+    /// It ran, and an expectation did not hold.
+    Unmet(String, String),
+}
+
+/// The one terminal event of a turn.
+fn end(result: Result<Ended, Failure>, listener: &mut dyn Listener) -> Outcome {
+    match result {
+        Ok(Ended::Completed(version)) => {
+            listener.event(Event::TurnCompleted { exit_code: 0, version: version.clone() });
+            Outcome { exit_code: 0, version }
+        }
+        Ok(Ended::Cancelled(version)) => {
+            let exit_code = crate::cli::signals::received().unwrap_or(Kind::Interrupted).code();
+            listener.event(Event::TurnCancelled { exit_code, version: Some(version.clone()) });
+            Outcome { exit_code, version: Some(version) }
+        }
+        Ok(Ended::Unmet(version, error)) => {
+            let exit_code = Kind::Expectation.code();
+            listener.event(Event::TurnFailed { exit_code, error });
+            Outcome { exit_code, version: Some(version) }
+        }
+        Err(failure) => {
+            let exit_code = failure.kind.code();
+            listener.event(Event::TurnFailed { exit_code, error: failure.message });
+            Outcome { exit_code, version: None }
+        }
+    }
+}
+
+fn judge(metrics: &Metrics, version: &str) -> Result<Ended, Failure> {
+    let unmet = metrics.expect.iter().filter(|e| !e.held);
+    let lines: Vec<String> = unmet
+        .map(|e| match e.value {
+            Some(value) => format!("expected {}, measured {value:.4}", e.text),
+            None => format!("expected {}, and it was never so", e.text),
+        })
+        .collect();
+    if lines.is_empty() { Ok(Ended::Completed(Some(version.to_owned()))) } else { Ok(Ended::Unmet(version.to_owned(), lines.join("\n"))) }
+}
+
+fn say_not_understood(words: Vec<String>, listener: &mut dyn Listener) {
+    if !words.is_empty() {
+        listener.event(Event::NotUnderstood { words });
+    }
+}
+
+/// Words that led to an edit which the schema refuses are a refused turn, not a wrong spec.
+fn as_refusal(failure: Failure) -> Failure {
+    match failure.kind {
+        Kind::Spec => Failure::other(failure.message),
+        _ => failure,
+    }
+}
+
+/// Keeps one frame of a run.
+struct Catcher {
+    index: u32,
+    frame: Option<phystalk::Frame>,
+}
+
+impl phystalk::Sink for Catcher {
+    fn progress(&mut self, _: phystalk::Progress) {}
+    fn frame(&mut self, frame: phystalk::Frame) {
+        if frame.index == self.index {
+            self.frame = Some(frame);
+        }
+    }
+    fn warning(&mut self, _: &str) {}
+}

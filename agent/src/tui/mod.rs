@@ -1,0 +1,191 @@
+//! The REPL: a transcript, a line to type in, a moving preview. One thread draws and takes keys, one
+//! owns the engine, one reads the keyboard; they speak through one channel. It draws when something
+//! changed, never else.
+
+mod answer;
+mod app;
+mod commands;
+mod composer;
+mod draw;
+mod pane;
+mod terminal;
+mod theme;
+mod transcript;
+mod worker;
+
+use crate::cli::exit::Failure;
+use crate::conversation::Conversation;
+use crate::preview::Reel;
+use crate::preview::terminal::Graphics;
+use app::{App, Effect, Update};
+use crossterm::event::Event as Input;
+use pane::Pane;
+use phystalk::Stop;
+use phystalk::store::Store;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+use terminal::Screen;
+use theme::Theme;
+use transcript::Voice;
+
+/// Shortest time between two drawings.
+const BREATH: Duration = Duration::from_millis(16);
+
+/// What wakes the thread that draws.
+pub enum Message {
+    /// A key, a paste, another size.
+    Input(Input),
+    /// News of the engine's thread.
+    Update(Update),
+}
+
+/// How the REPL starts.
+pub struct Options {
+    /// How pictures reach the terminal.
+    pub graphics: Graphics,
+    /// The first thing said, if any.
+    pub prompt: Option<String>,
+    /// Opens the window beside the REPL.
+    pub window: Box<dyn Fn() -> Result<(), Failure>>,
+}
+
+/// Runs the REPL until the user leaves.
+pub fn run(conversation: Conversation, store: &Store, options: Options) -> Result<(), Failure> {
+    let session = conversation.session().name().to_owned();
+    let scene = conversation.session().spec().scene.file.clone();
+    let mut screen = Screen::take(&worker::log_file(store.dir()))?;
+    let painter = options.graphics.settle();
+    screen.painted_by(painter);
+    let reel = Reel::default();
+    let mut app = App::new(&session, Pane::new(reel.clone(), painter), Theme::from_environment());
+    app.version = conversation.session().head().map(|v| v.name.clone()).unwrap_or_default();
+    app.transcript.add(Voice::Agent, format!("{scene}: say what should happen, as \"make it jump\" or \"drop it from 1 m\""));
+    app.transcript.add(Voice::Detail, "words are understood by the phrasebook, offline; /help lists commands and keys");
+
+    let (post, inbox) = channel();
+    let brake: worker::Brake = Arc::new(Mutex::new(Stop::default()));
+    let (ask, requests) = channel();
+    let engine = {
+        let (post, reel, brake) = (post.clone(), reel.clone(), brake.clone());
+        let serve = move || worker::serve(conversation, &requests, &post, &reel, &brake);
+        std::thread::Builder::new().name("engine".into()).spawn(serve)?
+    };
+    read_keys(post)?;
+    let desk = Desk { ask, brake, store: store.clone(), session, window: options.window };
+    let first = options.prompt.map(|p| app.enter(p, Instant::now())).unwrap_or_default();
+    let result = attend(&mut app, &mut screen, &inbox, &desk, first);
+    drop(screen);
+    // The engine ends at its next batch: the stop flag is up, and there is nobody left to ask.
+    desk.stop();
+    drop(desk);
+    let _ = engine.join();
+    result
+}
+
+/// The keyboard's thread: it lives as long as the process.
+fn read_keys(post: Sender<Message>) -> Result<(), Failure> {
+    let read = move || {
+        while let Ok(input) = crossterm::event::read() {
+            if post.send(Message::Input(input)).is_err() {
+                break;
+            }
+        }
+    };
+    std::thread::Builder::new().name("keys".into()).spawn(read)?;
+    Ok(())
+}
+
+/// What effects act on.
+struct Desk {
+    ask: Sender<app::Request>,
+    brake: worker::Brake,
+    store: Store,
+    session: String,
+    window: Box<dyn Fn() -> Result<(), Failure>>,
+}
+
+impl Desk {
+    fn stop(&self) {
+        if let Ok(stop) = self.brake.lock() {
+            stop.raise();
+        }
+    }
+}
+
+/// Takes messages and draws, until the user leaves.
+fn attend(app: &mut App, screen: &mut Screen, inbox: &Receiver<Message>, desk: &Desk, first: Vec<Effect>) -> Result<(), Failure> {
+    let mut leave = act(app, screen, desk, first)?;
+    let mut changed = true;
+    while !leave {
+        if changed {
+            screen.terminal.draw(|frame| draw::draw(app, frame))?;
+            changed = false;
+            std::thread::sleep(BREATH);
+        }
+        let now = Instant::now();
+        let message = match app.pane.due(now) {
+            Some(due) => match inbox.recv_timeout(due.saturating_duration_since(now)) {
+                Ok(message) => Some(message),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => break,
+            },
+            None => match inbox.recv() {
+                Ok(message) => Some(message),
+                Err(_) => break,
+            },
+        };
+        // All that waits is taken before the next drawing: a burst of frames is one drawing.
+        for message in message.into_iter().chain(inbox.try_iter()) {
+            changed = true;
+            let effects = take(app, screen, message)?;
+            leave |= act(app, screen, desk, effects)?;
+        }
+        changed |= app.pane.advance(Instant::now());
+    }
+    Ok(())
+}
+
+fn take(app: &mut App, screen: &mut Screen, message: Message) -> Result<Vec<Effect>, Failure> {
+    let now = Instant::now();
+    Ok(match message {
+        Message::Input(Input::Key(key)) => app.key(key, now),
+        Message::Input(Input::Paste(text)) => {
+            app.paste(&text);
+            Vec::new()
+        }
+        Message::Input(Input::Resize(..)) => {
+            screen.terminal.autoresize()?;
+            vec![Effect::Redraw]
+        }
+        Message::Input(_) => Vec::new(),
+        Message::Update(update) => app.update(update, now),
+    })
+}
+
+/// Does what the interface asked for; whether to leave.
+fn act(app: &mut App, screen: &mut Screen, desk: &Desk, effects: Vec<Effect>) -> Result<bool, Failure> {
+    for effect in effects {
+        match effect {
+            Effect::Send(request) => {
+                // The engine's thread ends only with the program.
+                let _ = desk.ask.send(request);
+            }
+            Effect::Ask(question) => match answer::answer(&question, &desk.store, &desk.session) {
+                Ok(text) => app.transcript.add(Voice::Detail, text),
+                Err(failure) => app.transcript.add(Voice::Error, failure.message),
+            },
+            Effect::Stop => desk.stop(),
+            Effect::Window => match (desk.window)() {
+                Ok(()) => app.transcript.add(Voice::Agent, "the window opens beside"),
+                Err(failure) => app.transcript.add(Voice::Error, failure.message),
+            },
+            Effect::Redraw => {
+                app.pane.repaint();
+                screen.terminal.clear()?;
+            }
+            Effect::Quit => return Ok(true),
+        }
+    }
+    Ok(false)
+}

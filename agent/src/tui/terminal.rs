@@ -1,0 +1,78 @@
+//! The screen: taken at the start, given back at the end, after a crash and on signals.
+
+use crate::cli::crash;
+use crate::preview::terminal::{Painter, forget_pictures};
+use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
+use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen};
+use ratatui::Terminal;
+use ratatui::backend::CrosstermBackend;
+use std::fs::File;
+use std::io::{self, Stdout, Write};
+use std::path::Path;
+
+/// The screen while it is ours.
+pub struct Screen {
+    /// What to draw on.
+    pub terminal: Terminal<CrosstermBackend<Stdout>>,
+    errors: Option<Errors>,
+}
+
+/// Where standard error went meanwhile.
+struct Errors {
+    #[cfg(unix)]
+    before: std::os::fd::OwnedFd,
+}
+
+impl Screen {
+    /// Takes the screen: raw keys, the alternate screen, no mouse. What drivers write to standard
+    /// error goes to `log` meanwhile.
+    pub fn take(log: &Path) -> io::Result<Screen> {
+        crossterm::terminal::enable_raw_mode()?;
+        crash::on_crash(|| give_back(None));
+        crossterm::execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste)?;
+        let errors = File::create(log).and_then(|file| redirect_errors(&file)).ok();
+        Ok(Screen { terminal: Terminal::new(CrosstermBackend::new(io::stdout()))?, errors })
+    }
+
+    /// Remembers that pictures have to be removed from the terminal's memory at the end.
+    pub fn painted_by(&self, painter: Option<Painter>) {
+        crash::on_crash(move || give_back(painter));
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        crash::restore_terminal();
+        restore_errors(self.errors.take());
+    }
+}
+
+/// Leaves the terminal as it was found. Errors have nowhere to go by then.
+fn give_back(painter: Option<Painter>) {
+    let mut out = io::stdout();
+    let _ = out.write_all(forget_pictures(painter).as_bytes());
+    let _ = crossterm::execute!(out, DisableBracketedPaste, LeaveAlternateScreen, crossterm::cursor::Show);
+    let _ = crossterm::terminal::disable_raw_mode();
+}
+
+#[cfg(unix)]
+fn redirect_errors(file: &File) -> io::Result<Errors> {
+    let before = rustix::io::dup(io::stderr())?;
+    rustix::stdio::dup2_stderr(file)?;
+    Ok(Errors { before })
+}
+
+#[cfg(unix)]
+fn restore_errors(errors: Option<Errors>) {
+    if let Some(errors) = errors {
+        let _ = rustix::stdio::dup2_stderr(&errors.before);
+    }
+}
+
+#[cfg(not(unix))]
+fn redirect_errors(_: &File) -> io::Result<Errors> {
+    Ok(Errors {})
+}
+
+#[cfg(not(unix))]
+fn restore_errors(_: Option<Errors>) {}
