@@ -5,5 +5,6 @@ struct Substep {
     dt_next_s: f32,
     // Counts from the start of the run.
     index: u32,
-    unused: u32,
+    // Which job a pass that has several does; 0 in a run.
+    job: u32,
 }

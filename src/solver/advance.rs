@@ -14,11 +14,11 @@ use glam::Vec3;
 /// `Substep` of `shaders/solver/substep.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Substep {
-    dt_s: f32,
-    dt_next_s: f32,
-    index: u32,
-    unused: u32,
+pub(super) struct Substep {
+    pub dt_s: f32,
+    pub dt_next_s: f32,
+    pub index: u32,
+    pub job: u32,
 }
 
 /// How a segment is cut into substeps.
@@ -134,13 +134,13 @@ impl Solver {
         forces.chain(pins).filter(|&t| t > self.time_s + SAME_TIME_S).fold(until_s, f64::min)
     }
 
-    fn in_force(&self, from_s: f64, to_s: f64) -> bool {
+    pub(super) fn in_force(&self, from_s: f64, to_s: f64) -> bool {
         from_s <= self.time_s + SAME_TIME_S && self.time_s + SAME_TIME_S < to_s
     }
 
     /// Uploads the forces and pins of the present time. The largest acceleration that anything feels
     /// beside contact and stress.
-    fn set_surroundings(&mut self) -> f32 {
+    pub(super) fn set_surroundings(&mut self) -> f32 {
         let mut accelerations = vec![Vec3::ZERO; self.object_count as usize];
         for force in self.settings.forces.iter().filter(|f| self.in_force(f.from_s, f.to_s)) {
             if let Some(sum) = accelerations.get_mut(force.object as usize) {
@@ -244,7 +244,7 @@ impl Solver {
     fn record_substep(&mut self, plan: &Plan, step: u32, grid: &GridBuffers, bound: &[Bound; 2], recording: &mut Recording) {
         let groups = self.particle_groups();
         let sorts = step.is_multiple_of(plan.sort_every);
-        let substep = Substep { dt_s: plan.dt_of(step), dt_next_s: plan.dt_of(step + 1), index: self.substep, unused: 0 };
+        let substep = Substep { dt_s: plan.dt_of(step), dt_next_s: plan.dt_of(step + 1), index: self.substep, job: 0 };
         if sorts {
             self.record_sort(grid, &bound[self.current], recording);
             self.current = 1 - self.current;
@@ -314,7 +314,7 @@ impl Solver {
         self.gpu.submit(&recording);
     }
 
-    fn copy_state(&self, from: &super::state::StateBuffers, to: &super::state::StateBuffers) {
+    pub(super) fn copy_state(&self, from: &super::state::StateBuffers, to: &super::state::StateBuffers) {
         let bytes = (super::state::PLANES * self.params.count as usize * 16) as u64;
         let mut recording = Recording::default();
         recording.copy(&from.kinematics, &to.kinematics, bytes);
@@ -345,8 +345,8 @@ pub(super) struct Bound {
     scan_cells: wgpu::BindGroup,
     scatter: wgpu::BindGroup,
     order: wgpu::BindGroup,
-    stress: wgpu::BindGroup,
-    p2g: wgpu::BindGroup,
+    pub stress: wgpu::BindGroup,
+    pub p2g: wgpu::BindGroup,
     grid: wgpu::BindGroup,
     g2p: wgpu::BindGroup,
 }

@@ -37,6 +37,18 @@ pub const SUM_LIMIT: f32 = 536_870_912.0;
 pub const MASS_BITS: i32 = 23;
 /// Cells that a particle may travel between two sorts.
 pub const SLACK_CELLS: i32 = 1;
+/// A node whose nearest particle is within this of its rest offset stands on its support, in cells.
+pub const TOUCHING_CELLS: f32 = 0.02;
+/// A node that pulls at its support by more than this share of its weight lets go.
+pub const RELEASE: f32 = 0.02;
+/// Rounds, and the share of each step, of the search for the stretch that carries a stress. A share
+/// of 0.6 converges for principal stretches of 0.7 to 1.6.
+pub const CARRY_STEPS: u32 = 32;
+/// See [`CARRY_STEPS`].
+pub const CARRY_SHARE: f32 = 0.6;
+/// Pseudo mass, in fixed-point units, below which a node of the prestress counts as this heavy: a
+/// thousandth of the heaviest particle's.
+pub const LIGHTEST: f32 = 8192.0;
 
 /// All of them as WGSL constants.
 pub fn all() -> Vec<(&'static str, Constant)> {
@@ -53,6 +65,11 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("J_MOST", Constant::F32(J_MOST)),
         ("GAP_STEPS", Constant::F32(GAP_STEPS)),
         ("REST_CELLS_MAX", Constant::F32(REST_CELLS_MAX)),
+        ("TOUCHING_CELLS", Constant::F32(TOUCHING_CELLS)),
+        ("RELEASE", Constant::F32(RELEASE)),
+        ("LIGHTEST", Constant::F32(LIGHTEST)),
+        ("CARRY_STEPS", Constant::U32(CARRY_STEPS)),
+        ("CARRY_SHARE", Constant::F32(CARRY_SHARE)),
         ("SUM_LIMIT", Constant::F32(SUM_LIMIT)),
     ]
 }

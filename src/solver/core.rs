@@ -273,7 +273,7 @@ fn check(settings: &Settings) -> Result<(), SolverError> {
     if !(settings.cfl > 0.0 && settings.cfl <= 0.6) {
         return refuse(format!("a CFL number of {}", settings.cfl), "over 0, at most 0.6");
     }
-    if settings.frame_s.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
+    if !(settings.frame_s > 0.0 && settings.frame_s.is_finite()) {
         return refuse(format!("frames of {} s", settings.frame_s), "a positive length");
     }
     Ok(())

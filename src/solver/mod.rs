@@ -12,6 +12,7 @@ mod core;
 mod grid;
 mod obstacles;
 mod passes;
+mod prestress;
 mod state;
 mod types;
 mod watch;

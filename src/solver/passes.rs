@@ -27,7 +27,7 @@ pub fn kernels() -> Vec<KernelSource> {
 }
 
 /// In the order of [`Passes`].
-fn sources() -> [KernelSource; 13] {
+fn sources() -> [KernelSource; 18] {
     [
         source("solver.bin", vec![shader!("control"), shader!("cell"), shader!("bin")], &[Uniform, Read, Write, Write, Write], 0),
         source("solver.scan_sums", vec![shader!("scan"), shader!("scan_sums")], &[Uniform, Read, Write], 0),
@@ -69,6 +69,51 @@ fn sources() -> [KernelSource; 13] {
         ),
         source("solver.measure", vec![shader!("control"), shader!("particle"), shader!("measure")], &[Uniform, Read, Read, Write], 0),
         source("solver.kick", vec![shader!("particle"), shader!("particle_write"), shader!("kick")], &[Uniform, Write, Read], KICK),
+        source(
+            "solver.prestress_gather",
+            vec![
+                shader!("control"),
+                shader!("substep"),
+                shader!("material"),
+                shader!("particle"),
+                shader!("particle_write"),
+                shader!("prestress"),
+                shader!("prestress_gather"),
+            ],
+            &[Uniform, Write, Write, Read, Write],
+            SUBSTEP,
+        ),
+        source(
+            "solver.prestress_residual",
+            vec![
+                shader!("control"),
+                shader!("substep"),
+                shader!("contact"),
+                shader!("prestress"),
+                shader!("prestress_sum"),
+                shader!("prestress_residual"),
+            ],
+            &[Uniform, Read, Read, Read, Write, Write, Write, Write, Write, Write],
+            SUBSTEP,
+        ),
+        source(
+            "solver.prestress_product",
+            vec![shader!("control"), shader!("substep"), shader!("prestress"), shader!("prestress_sum"), shader!("prestress_product")],
+            &[Uniform, Read, Write, Write, Write, Write, Write],
+            SUBSTEP,
+        ),
+        source(
+            "solver.prestress_control",
+            vec![shader!("substep"), shader!("prestress"), shader!("prestress_sum"), shader!("prestress_control")],
+            &[Uniform, Read, Read, Write],
+            SUBSTEP,
+        ),
+        source(
+            "solver.prestress_update",
+            vec![shader!("substep"), shader!("prestress"), shader!("prestress_sum"), shader!("prestress_update")],
+            &[Uniform, Read, Read, Write, Write, Write],
+            SUBSTEP,
+        ),
         source("solver.frame", vec![shader!("particle"), shader!("frame")], &[Uniform, Read, Read, Read, Write, Write], 0),
     ]
 }
@@ -93,13 +138,55 @@ pub(super) struct Passes {
     pub g2p: Kernel,
     pub measure: Kernel,
     pub kick: Kernel,
+    pub prestress_gather: Kernel,
+    pub prestress_residual: Kernel,
+    pub prestress_product: Kernel,
+    pub prestress_control: Kernel,
+    pub prestress_update: Kernel,
     pub frame: Kernel,
 }
 
 impl Passes {
     pub fn new(gpu: &Gpu) -> Passes {
-        let [bin, scan_sums, scan_blocks, scan_cells, scatter, order, stress, p2g, grid, g2p, measure, kick, frame] =
-            sources().map(|source| gpu.kernel(&source));
-        Passes { bin, scan_sums, scan_blocks, scan_cells, scatter, order, stress, p2g, grid, g2p, measure, kick, frame }
+        let [
+            bin,
+            scan_sums,
+            scan_blocks,
+            scan_cells,
+            scatter,
+            order,
+            stress,
+            p2g,
+            grid,
+            g2p,
+            measure,
+            kick,
+            prestress_gather,
+            prestress_residual,
+            prestress_product,
+            prestress_control,
+            prestress_update,
+            frame,
+        ] = sources().map(|source| gpu.kernel(&source));
+        Passes {
+            bin,
+            scan_sums,
+            scan_blocks,
+            scan_cells,
+            scatter,
+            order,
+            stress,
+            p2g,
+            grid,
+            g2p,
+            measure,
+            kick,
+            prestress_gather,
+            prestress_residual,
+            prestress_product,
+            prestress_control,
+            prestress_update,
+            frame,
+        }
     }
 }

@@ -31,7 +31,9 @@ pub(super) struct ParticleState {
     pub tag: u32,
     /// How far from its support it stands, metres; see `REST_CELLS`.
     pub rest_m: f32,
-    pub padding: [f32; 3],
+    /// Mass over pseudo mass while the prestress is sought.
+    pub weight_ratio: f32,
+    pub padding: [f32; 2],
 }
 
 impl ParticleState {
@@ -135,7 +137,7 @@ impl StateBuffers {
             matter[i] = [f[0], f[1], f[2], s.mu_pa];
             matter[n + i] = [f[3], f[4], f[5], s.lambda_pa];
             matter[2 * n + i] = [f[6], f[7], f[8], s.volume_m3];
-            matter[3 * n + i] = [f32::from_bits(s.index), f32::from_bits(s.tag), s.rest_m, 0.0];
+            matter[3 * n + i] = [f32::from_bits(s.index), f32::from_bits(s.tag), s.rest_m, s.weight_ratio];
         }
         gpu.upload(&self.kinematics, &kinematics);
         gpu.upload(&self.matter, &matter);
@@ -163,7 +165,8 @@ impl StateBuffers {
                 volume_m3: c[3],
                 tag: m[3 * n + i][1].to_bits(),
                 rest_m: m[3 * n + i][2],
-                padding: [0.0; 3],
+                weight_ratio: m[3 * n + i][3],
+                padding: [0.0; 2],
             };
         }
         Ok(states)

@@ -1,6 +1,7 @@
 //! Tests of the whole solver on a device, and of each kernel against its twin.
 
 mod motion;
+mod prestress;
 
 use super::{Particles, Settings, Solver};
 use crate::gpu::Gpu;

@@ -1,0 +1,336 @@
+//! As captured, so at rest: the stress that a captured thing already carries.
+//!
+//! The captured positions are held, and F0 is sought so that stress, weight and support balance at
+//! every grid node, with the same transfers that the run uses: what balances here stays where it is
+//! there. Each system is the linear stiffness of the present state, solved by conjugate gradients
+//! whose pseudo masses follow the local stiffness; its solution deforms F, and the true stress says
+//! what is left. Slender stems have modes a thousand times slower than the grid's fastest, which
+//! relaxation in time would have to wait for.
+
+use super::advance::{Bound, Substep};
+use super::constants::{REST_CELLS, REST_CELLS_MAX, SLACK_CELLS};
+use super::core::Solver;
+use super::grid::GridBuffers;
+use super::obstacles::{self, distance_m};
+use super::state::ParticleState;
+use super::types::{PrestressReport, SolverError};
+use super::watch::Control;
+use crate::Stop;
+use crate::gpu::{Recording, Tier};
+use bytemuck::{Pod, Zeroable};
+
+/// `Search` of `shaders/solver/prestress.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(super) struct Search {
+    alpha: f32,
+    beta: f32,
+    gamma: f32,
+    gained: f32,
+    left: f32,
+    weight: f32,
+    rounds: u32,
+    done: u32,
+}
+
+/// Jobs of its passes, as `shaders/solver/prestress.wgsl` names them.
+const SET_UP: u32 = 0;
+const CURVATURE: u32 = 1;
+const TURN: u32 = 2;
+const ADOPT: u32 = 3;
+/// vec4 that the search keeps for each node.
+const VECTORS: usize = 5;
+/// A system is solved when BATCH rounds gain less than this share of the energy gained so far.
+const SETTLED: f32 = 1e-4;
+/// The search is over when a whole system gains less than this share: strains squared are accounted for.
+const CONVERGED: f32 = 1e-3;
+/// Systems in all.
+const SYSTEMS: u32 = 6;
+/// Rounds of conjugate gradients in all systems together.
+const ROUNDS: u32 = 6_000;
+/// Rounds that energy is compared over.
+const BATCH: u32 = 64;
+/// Pseudo masses are those for which a step of 1 has this CFL number.
+const CFL: f32 = 0.4;
+/// Particle-rounds of one submit on a software adapter.
+const CPU_BATCH: u32 = 600_000;
+
+/// The bind groups of the search.
+struct Groups {
+    gather: wgpu::BindGroup,
+    residual: wgpu::BindGroup,
+    product: wgpu::BindGroup,
+    control: wgpu::BindGroup,
+    update: wgpu::BindGroup,
+}
+
+/// What a search works on.
+struct Scene<'a> {
+    grid: GridBuffers,
+    bound: Bound,
+    groups: Groups,
+    search: wgpu::Buffer,
+    stop: &'a Stop,
+    round: u32,
+}
+
+impl Solver {
+    /// Solves the prestress of objects that stand as captured, for the gravity and pins at t = 0.
+    /// Called before [`Solver::place`]; positions stay to the bit. Objects that nothing supports stay
+    /// free of stress, and the report says so.
+    pub fn prestress(&mut self, objects: &[u32], stop: &Stop, progress: &mut dyn FnMut(f32)) -> Result<PrestressReport, SolverError> {
+        let mut report = PrestressReport { converged: true, residual: 0.0, iterations: 0, warnings: Vec::new() };
+        if objects.is_empty() || self.settings.gravity_m_s2 == glam::Vec3::ZERO {
+            return Ok(report);
+        }
+        let seen = self.look()?;
+        self.fit_window(seen.low, seen.high, SLACK_CELLS + 3)?;
+        self.set_surroundings();
+        let mut states = self.states()?;
+        let supported = self.settle_offsets(&mut states, objects, &mut report);
+        if supported.is_empty() {
+            return Ok(report);
+        }
+        let kept = self.params;
+        let result = self.search(&states, &supported, stop, progress, &mut report);
+        self.params = kept;
+        let found = result?;
+        let mut unstressed: Vec<[f32; 12]> = self.gpu.read(&self.unstressed, states.len())?;
+        for (i, (state, found)) in states.iter_mut().zip(&found).enumerate() {
+            if supported.contains(&state.object()) {
+                state.deformation = found.deformation;
+                let inverse = state.f().as_dmat3().inverse().as_mat3().transpose();
+                let rows = [inverse.x_axis, inverse.y_axis, inverse.z_axis].map(|row| row.extend(0.0).to_array());
+                unstressed[i] = bytemuck::cast(rows);
+            }
+        }
+        self.gpu.upload(&self.unstressed, &unstressed);
+        self.replace(&states);
+        if !report.converged {
+            report.warnings.push(format!(
+                "the captured pose does not quite balance: {:.1} % of weight is left over after {} rounds, and it will settle a little",
+                report.residual * 100.0,
+                report.iterations
+            ));
+        }
+        Ok(report)
+    }
+
+    /// Lets what stands within a cell of its support stand on it exactly. The objects that something
+    /// supports.
+    fn settle_offsets(&self, states: &mut [ParticleState], objects: &[u32], report: &mut PrestressReport) -> Vec<u32> {
+        let cell_m = self.settings.cell_m;
+        let colliders = obstacles::colliders(&self.settings);
+        let pinned = self.settings.pins.iter().any(|p| self.in_force(p.from_s, p.to_s));
+        let mut supported = Vec::new();
+        for &object in objects {
+            let lowest_m = states.iter().filter(|s| s.object() == object).map(|s| distance_m(&colliders, s.position_m)).fold(f32::INFINITY, f32::min);
+            if lowest_m > REST_CELLS_MAX * cell_m {
+                if pinned {
+                    supported.push(object);
+                } else {
+                    report.warnings.push(format!(
+                        "object {object} hangs {:.0} mm above whatever is below it, so nothing carries it as captured: its pose is taken as free of stress",
+                        lowest_m * 1e3
+                    ));
+                }
+                continue;
+            }
+            supported.push(object);
+            let most_m = (REST_CELLS * cell_m).max(lowest_m + 0.01 * cell_m);
+            for state in states.iter_mut().filter(|s| s.object() == object) {
+                state.rest_m = distance_m(&colliders, state.position_m).clamp(-2.0 * REST_CELLS * cell_m, most_m);
+            }
+        }
+        supported
+    }
+
+    /// Runs the search on pseudo masses; the particles with the F that it found, in original order.
+    fn search(
+        &mut self,
+        states: &[ParticleState],
+        objects: &[u32],
+        stop: &Stop,
+        progress: &mut dyn FnMut(f32),
+        report: &mut PrestressReport,
+    ) -> Result<Vec<ParticleState>, SolverError> {
+        let pseudo = self.pseudo_particles(states, objects);
+        let heaviest = pseudo.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
+        self.params.mass_units = 2f32.powi(super::constants::MASS_BITS - heaviest.log2().ceil() as i32);
+        self.params.momentum_floor = heaviest * 1e-12;
+        self.buffers[self.current].upload(&self.gpu, &pseudo);
+        let mut scene = self.set_up(stop)?;
+        report.residual = residual(&self.first_system(&mut scene)?);
+        let mut gained = 0.0;
+        report.converged = false;
+        for _ in 0..SYSTEMS {
+            self.keep_matter();
+            let gain = self.solve(&mut scene, gained, progress)?;
+            gained += gain;
+            let left = residual(&self.adopt(&mut scene)?);
+            // Not even a smaller residual, or none that is a number: the last stress was better.
+            if left.is_nan() || left >= report.residual {
+                self.restore_matter();
+                break;
+            }
+            report.residual = left;
+            report.converged = gain <= CONVERGED * gained;
+            if report.converged || scene.round > ROUNDS || stop.raised() {
+                break;
+            }
+        }
+        report.iterations = scene.round;
+        self.states()
+    }
+
+    /// Particles whose mass is a stiffness: V (lambda + 2 mu) / (C cell)^2, at rest under their weight.
+    fn pseudo_particles(&self, states: &[ParticleState], objects: &[u32]) -> Vec<ParticleState> {
+        let mut pseudo = states.to_vec();
+        for state in &mut pseudo {
+            let takes_part = objects.contains(&state.object());
+            let stiffness = state.volume_m3 * (state.lambda_pa + 2.0 * state.mu_pa) / (CFL * self.settings.cell_m).powi(2);
+            state.weight_ratio = if takes_part { state.mass_kg / stiffness } else { 0.0 };
+            state.mass_kg = if takes_part { stiffness } else { 0.0 };
+            state.velocity_m_s = self.settings.gravity_m_s2 * state.weight_ratio;
+            state.affine = [0.0; 9];
+            if takes_part {
+                state.set_f(glam::Mat3::IDENTITY);
+            }
+        }
+        pseudo
+    }
+
+    /// Sorts, and makes room for the search's vectors on the active blocks.
+    fn set_up<'a>(&mut self, stop: &'a Stop) -> Result<Scene<'a>, SolverError> {
+        let Some(grid) = self.grid.clone() else {
+            return Err(SolverError::Input { what: "no grid".to_owned(), expected: "a window".to_owned() });
+        };
+        self.gpu.upload(&self.params_buffer, &[self.params]);
+        self.gpu.upload(&self.control, &[Control::FRESH]);
+        let mut recording = Recording::default();
+        self.record_sort(&grid, &self.bind(&grid, self.current), &mut recording);
+        self.gpu.submit(&recording);
+        self.current = 1 - self.current;
+        let active = self.gpu.read::<u32>(&grid.active_blocks, 1)?[0] as usize;
+        let nodes = self.gpu.storage::<[f32; 4]>("solver.prestress_nodes", VECTORS * 64 * active)?;
+        let partial = self.gpu.storage::<[f32; 4]>("solver.prestress_partial", active)?;
+        let search = self.gpu.storage::<Search>("solver.prestress_search", 1)?;
+        let (gpu, p, params) = (&self.gpu, &self.passes, &self.params_buffer);
+        let state = &self.buffers[self.current];
+        let groups = Groups {
+            gather: gpu.bind(&p.prestress_gather, &[params, &state.kinematics, &state.matter, &grid.velocity, &self.control]),
+            residual: gpu.bind(
+                &p.prestress_residual,
+                &[
+                    params,
+                    &grid.active_blocks,
+                    &self.colliders_buffer,
+                    &self.pins_buffer,
+                    &grid.sums,
+                    &grid.marks,
+                    &grid.velocity,
+                    &self.control,
+                    &nodes,
+                    &partial,
+                ],
+            ),
+            product: gpu.bind(&p.prestress_product, &[params, &grid.active_blocks, &grid.sums, &grid.marks, &self.control, &nodes, &partial]),
+            control: gpu.bind(&p.prestress_control, &[params, &grid.active_blocks, &partial, &search]),
+            update: gpu.bind(&p.prestress_update, &[params, &grid.active_blocks, &search, &grid.velocity, &nodes, &partial]),
+        };
+        let bound = self.bind(&grid, self.current);
+        Ok(Scene { grid, bound, groups, search, stop, round: 0 })
+    }
+
+    /// Weight and supports of every node, from particles free of stress.
+    fn first_system(&mut self, scene: &mut Scene) -> Result<Search, SolverError> {
+        let mut recording = Recording::default();
+        let zero = job(SET_UP, 0);
+        recording.dispatch_with(&self.passes.stress, &scene.bound.stress, &zero, self.particle_groups());
+        self.record_system(scene, SET_UP, &mut recording);
+        self.gpu.submit(&recording);
+        self.read_search(scene)
+    }
+
+    /// Force left over under the present stress.
+    fn record_system(&self, scene: &Scene, which: u32, recording: &mut Recording) {
+        let substep = job(which, scene.round);
+        recording.dispatch_with(&self.passes.p2g, &scene.bound.p2g, &substep, self.particle_groups());
+        recording.indirect_with(&self.passes.prestress_residual, &scene.groups.residual, &substep, &scene.grid.active_groups, 0);
+        recording.dispatch_with(&self.passes.prestress_control, &scene.groups.control, &substep, [1, 1, 1]);
+    }
+
+    /// Rounds of conjugate gradients until the system is solved, the budget is spent, or it is stopped.
+    /// The energy gained.
+    fn solve(&mut self, scene: &mut Scene, before: f32, progress: &mut dyn FnMut(f32)) -> Result<f32, SolverError> {
+        let batch = match self.gpu.tier {
+            Tier::Cpu => (CPU_BATCH / self.params.count).clamp(1, BATCH),
+            Tier::Gpu => BATCH,
+        };
+        let mut gained = 0.0;
+        while scene.round <= ROUNDS && !scene.stop.raised() {
+            let mut recording = Recording::default();
+            for _ in 0..batch {
+                self.record_round(scene, &mut recording);
+            }
+            self.gpu.submit(&recording);
+            let search = self.read_search(scene)?;
+            let rate = (search.gained - gained) * (BATCH / batch) as f32;
+            gained = search.gained;
+            progress(scene.round as f32 / ROUNDS as f32);
+            if search.done != 0 || rate <= SETTLED * (before + gained) {
+                break;
+            }
+        }
+        Ok(gained)
+    }
+
+    fn record_round(&self, scene: &mut Scene, recording: &mut Recording) {
+        let (passes, groups) = (&self.passes, self.particle_groups());
+        let before = job(CURVATURE, scene.round);
+        scene.round += 1;
+        let (now, turn) = (job(CURVATURE, scene.round), job(TURN, scene.round));
+        let (blocks, scene) = (&scene.grid.active_groups, &*scene);
+        recording.dispatch_with(&passes.prestress_gather, &scene.groups.gather, &before, groups);
+        recording.dispatch_with(&passes.p2g, &scene.bound.p2g, &now, groups);
+        recording.indirect_with(&passes.prestress_product, &scene.groups.product, &now, blocks, 0);
+        recording.dispatch_with(&passes.prestress_control, &scene.groups.control, &now, [1, 1, 1]);
+        recording.indirect_with(&passes.prestress_update, &scene.groups.update, &now, blocks, 0);
+        recording.dispatch_with(&passes.prestress_control, &scene.groups.control, &turn, [1, 1, 1]);
+        recording.indirect_with(&passes.prestress_update, &scene.groups.update, &turn, blocks, 0);
+    }
+
+    /// Deforms F by the solution and measures what is left.
+    fn adopt(&mut self, scene: &mut Scene) -> Result<Search, SolverError> {
+        let mut recording = Recording::default();
+        let substep = job(ADOPT, scene.round);
+        recording.indirect_with(&self.passes.prestress_update, &scene.groups.update, &substep, &scene.grid.active_groups, 0);
+        recording.dispatch_with(&self.passes.prestress_gather, &scene.groups.gather, &substep, self.particle_groups());
+        scene.round += 1;
+        self.record_system(scene, ADOPT, &mut recording);
+        self.gpu.submit(&recording);
+        self.read_search(scene)
+    }
+
+    fn read_search(&self, scene: &Scene) -> Result<Search, SolverError> {
+        Ok(self.gpu.read::<Search>(&scene.search, 1)?[0])
+    }
+
+    fn keep_matter(&self) {
+        self.copy_state(&self.buffers[self.current], &self.backup);
+    }
+
+    fn restore_matter(&self) {
+        self.copy_state(&self.backup, &self.buffers[self.current]);
+    }
+}
+
+/// Root mean square of what acceleration is left, as a share of gravity's.
+fn residual(search: &Search) -> f32 {
+    (search.left / search.weight).sqrt()
+}
+
+/// Immediates of a pass of the search.
+fn job(job: u32, index: u32) -> Substep {
+    Substep { dt_s: 0.0, dt_next_s: 0.0, index, job }
+}
