@@ -102,6 +102,12 @@ impl FrameBuffers {
         recording.dispatch(&passes.project, &bindings, fold(splats.count.div_ceil(THREADS)));
     }
 
+    /// What lies behind the Gaussians.
+    pub fn record_ground(&self, gpu: &Gpu, passes: &Passes, ground_map: &wgpu::Buffer, planes: &Planes, recording: &mut Recording) {
+        let bindings = gpu.bind(&passes.ground, &[&self.uniform, ground_map, &self.backdrop]);
+        recording.dispatch(&passes.ground, &bindings, fold((planes.size[0] * planes.size[1]).div_ceil(THREADS)));
+    }
+
     /// The projected Gaussians to a picture. `object` is named by the raster alone.
     pub fn record_picture(&self, gpu: &Gpu, passes: &Passes, uniform: &Uniform, planes: &Planes, object: &wgpu::Buffer, recording: &mut Recording) {
         let depth = passes.sort.plan(gpu, &self.by_depth, &self.shown, DEPTH_BITS);

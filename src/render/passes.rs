@@ -1,6 +1,7 @@
 //! The renderer's passes: their text, what they bind, their compiled form.
 
 use super::profile::{CORRELATION_MAX, DEPTH_BITS, EXPONENT_SLACK, FAR, OPACITY_MAX, REACH_SLACK, VARIANCE_MAX};
+use super::shadow;
 use crate::gpu::{Access, Constant, ExtentPass, Gpu, Kernel, KernelSource, RadixSort, Scan, THREADS, Tier};
 use std::sync::OnceLock;
 
@@ -13,6 +14,7 @@ const COMPACT: (&str, &str) = ("render/compact.wgsl", include_str!("../../shader
 const GATHER: (&str, &str) = ("render/gather.wgsl", include_str!("../../shaders/render/gather.wgsl"));
 const EMIT: (&str, &str) = ("render/emit.wgsl", include_str!("../../shaders/render/emit.wgsl"));
 const RANGES: (&str, &str) = ("render/ranges.wgsl", include_str!("../../shaders/render/ranges.wgsl"));
+const GROUND: (&str, &str) = ("render/ground.wgsl", include_str!("../../shaders/render/ground.wgsl"));
 const PIXEL: (&str, &str) = ("render/pixel.wgsl", include_str!("../../shaders/render/pixel.wgsl"));
 const RASTER: (&str, &str) = ("render/raster.wgsl", include_str!("../../shaders/render/raster.wgsl"));
 const RASTER_SERIAL: (&str, &str) = ("render/raster_serial.wgsl", include_str!("../../shaders/render/raster_serial.wgsl"));
@@ -105,9 +107,19 @@ fn sources() -> [KernelSource; 5] {
     ]
 }
 
+/// The plain ground's factor behind each pixel.
+fn ground_source() -> KernelSource {
+    let [spline, shade] = shadow::GROUND_PARTS;
+    let mut ground = source("render.ground", &[FRAME, spline, shade, GROUND], &[Access::Uniform, Access::Read, Access::Write]);
+    ground.constants.push(("SIDE", Constant::U32(shadow::SIDE)));
+    ground
+}
+
 /// Every pass of the room in every form, for validation and cache keys.
 pub fn kernels() -> Vec<KernelSource> {
     let mut all = sources().to_vec();
+    all.push(ground_source());
+    all.extend(shadow::kernels());
     for tier in [Tier::Cpu, Tier::Gpu] {
         for bin in [16, 32] {
             for (depth, id) in [(false, false), (true, true)] {
@@ -130,6 +142,7 @@ pub(super) struct Passes {
     pub gather: Kernel,
     pub emit: Kernel,
     pub ranges: Kernel,
+    pub ground: Kernel,
     raster: [OnceLock<Kernel>; 8],
 }
 
@@ -147,6 +160,7 @@ impl Passes {
             gather,
             emit,
             ranges,
+            ground: gpu.kernel(&ground_source()),
             raster: Default::default(),
         }
     }

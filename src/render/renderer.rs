@@ -117,7 +117,8 @@ impl Renderer {
         };
         uniform.capacity = buffers.capacity.pairs;
         self.gpu.queue.write_buffer(&buffers.uniform, 0, bytemuck::bytes_of(&uniform));
-        Ok(Frame { buffers, uniform, planes, object: splats.object.clone() })
+        let ground_map = options.ground.as_ref().and_then(|ground| ground.shadow.clone());
+        Ok(Frame { buffers, uniform, planes, object: splats.object.clone(), ground_map })
     }
 }
 
@@ -148,6 +149,7 @@ pub(super) struct Frame {
     pub uniform: Uniform,
     pub planes: Planes,
     object: wgpu::Buffer,
+    ground_map: Option<wgpu::Buffer>,
 }
 
 impl Frame {
@@ -155,6 +157,9 @@ impl Frame {
     pub fn record(&self, gpu: &Gpu, passes: &Passes, splats: &Splats) -> Recording {
         let mut recording = Recording::default();
         self.buffers.record_project(gpu, passes, splats, &mut recording);
+        if let Some(map) = &self.ground_map {
+            self.buffers.record_ground(gpu, passes, map, &self.planes, &mut recording);
+        }
         self.record_picture(gpu, passes, &mut recording);
         recording
     }
