@@ -1,6 +1,8 @@
 //! Pictures of the renderer against those kept in `snapshots/render/`, made on lavapipe (Mesa 22.3.6).
 //! `UPDATE_SNAPSHOTS=1` writes them anew; look at them before keeping them.
 
+#![allow(clippy::unwrap_used)] // Helpers of tests are tests too.
+
 use glam::{Quat, Vec3};
 use phystalk::export::{Raster, Tolerance, compare, read_png, write_exr, write_png};
 use phystalk::gpu::Gpu;

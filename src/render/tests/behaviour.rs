@@ -2,8 +2,9 @@
 
 use super::reference;
 use super::scenes::{ball, cloud, front, shoot, together, upload};
-use crate::gpu::{Gpu, Tier};
-use crate::render::{Image, Profile, RenderOptions, Renderer, View};
+use crate::gpu::{Gpu, Recording, Tier};
+use crate::render::shadow::Shadow;
+use crate::render::{GroundLook, Image, Profile, RenderOptions, Renderer, View};
 use crate::scene::Gaussians;
 use glam::{DQuat, DVec3, Vec3};
 
@@ -178,5 +179,42 @@ fn an_overflow_is_drawn_again_whole() {
         assert!(first == second);
         let (worst, depth, _) = compare(&first, &expected);
         assert!(worst < 1e-4 && depth < 1e-4, "{worst:.1e} {depth:.1e}");
+    }
+}
+
+#[test]
+fn the_plain_ground_darkens_under_what_stands_on_it_and_nowhere_else() {
+    let gpu = gpu();
+    // A ball of many that just touches the ground.
+    let on_ball = |i: usize| {
+        let (z, (sin, cos)) = (1.0 - (i as f32 + 0.5) / 300.0, (i as f32 * 2.399_963).sin_cos());
+        0.2 * Vec3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z + 1.0)
+    };
+    let g = together(&(0..600).map(|i| ball(on_ball(i), 0.015, 0.9, [0.8, 0.3, 0.2])).collect::<Vec<_>>());
+    let casters: Vec<u32> = (0..600).collect();
+    let splats = upload(&gpu, &g, DQuat::IDENTITY);
+    let view = View::look_at(Vec3::new(0.0, -2.5, 1.2), Vec3::new(0.0, 0.0, 0.1), 40.0, [96, 72]).with_background([0.9; 3]);
+    let shadow = Shadow::new(&gpu, &splats, &casters, &[], Some(0.0)).unwrap();
+    let mut recording = Recording::default();
+    shadow.record(&mut recording);
+    gpu.submit(&recording);
+    let draw = |shadow: Option<wgpu::Buffer>, tier, bin| {
+        let options = RenderOptions { ground: Some(GroundLook { height_m: 0.0, shadow }), ..RenderOptions::default() };
+        Renderer::with_form(&gpu, tier, bin).draw(&splats, &view, &options).unwrap().read(&gpu).unwrap().rgba8
+    };
+    let plain = draw(None, Tier::Cpu, 16);
+    for (tier, bin) in FORMS {
+        let shaded = draw(Some(shadow.ground_map().clone()), tier, bin);
+        let red = |picture: &[u8], x: usize, y: usize| picture[4 * (y * 96 + x)];
+        assert!((0..96).all(|x| red(&shaded, x, 0) == red(&plain, x, 0)), "nothing above the horizon");
+        let foot = view.world_to_camera.transform_point3(Vec3::new(0.0, -0.2, 0.0));
+        let (x, y) = ((view.fx * foot.x / foot.z + view.cx) as usize, (view.fy * foot.y / foot.z + view.cy) as usize);
+        assert!(red(&shaded, x, y) + 8 < red(&plain, x, y), "{} against {} at {x}, {y}", red(&shaded, x, y), red(&plain, x, y));
+        assert!(shaded.iter().zip(&plain).all(|(s, p)| s <= p), "never brighter");
+        let below = View::look_at(Vec3::new(0.0, -2.5, -0.5), Vec3::ZERO, 40.0, [96, 72]).with_background([0.9; 3]);
+        let options =
+            RenderOptions { ground: Some(GroundLook { height_m: 0.0, shadow: Some(shadow.ground_map().clone()) }), ..RenderOptions::default() };
+        let from_below = Renderer::with_form(&gpu, tier, bin).draw(&splats, &below, &options).unwrap().read(&gpu).unwrap();
+        assert_eq!(from_below.rgba8[..4], [230, 230, 230, 255], "the ground is seen from above only");
     }
 }
