@@ -2,14 +2,41 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::error::{SpecError, SpecErrorKind, shorten, show};
 use super::path::{self, LISTS};
-use super::{Edit, Spec, canonical::inline, spelling};
+use super::{Spec, canonical::inline, spelling};
 
 /// Tables that hold one of several forms: to set one form is to leave the other.
 const CHOICES: [&str; 3] = ["select", "shape", "region"];
+
+/// One change of a spec. Lists are addressed by name: `object.vase.material.young_pa`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "op", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Edit {
+    /// Replaces the value at a path.
+    Set {
+        /// Dotted path.
+        path: String,
+        /// The new value.
+        value: serde_json::Value,
+    },
+    /// Adds an entry with a name to a list.
+    Add {
+        /// The list: `object`, `pin`, `collider`, `force`, `event` or `expect`.
+        path: String,
+        /// The entry.
+        value: serde_json::Value,
+    },
+    /// Removes an entry, or sets an optional value back to its default.
+    Remove {
+        /// Dotted path.
+        path: String,
+    },
+}
 
 impl Spec {
     /// The spec after a list of edits: all of them, or an error and none.

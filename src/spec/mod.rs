@@ -3,6 +3,7 @@
 //! A [`Spec`] is complete by itself: nothing outside it changes the motion. Nothing mutates one but
 //! a list of [`Edit`]s, which is applied whole or not at all.
 
+mod auto;
 mod canonical;
 mod check;
 mod diff;
@@ -22,8 +23,10 @@ mod spelling;
 mod types;
 mod validate;
 
+pub use auto::{Auto, Until};
 pub use canonical::number;
 pub use diff::{Change, unit};
+pub use edit::Edit;
 pub use error::{SpecError, SpecErrorKind, nearest};
 pub use later::material as material_to_come;
 pub use path::{LISTS, is_name, name_from_file};

@@ -85,6 +85,7 @@ impl Entry {
     }
 
     /// Opens a blob. Read from start to end, its checksum is compared at the end; after a seek no more.
+    /// Where it differs, the entry is given up: the next `get` is a miss.
     pub fn open(&self, name: &str) -> Result<BlobReader, StoreError> {
         let (path, blob) = self.blob(name)?;
         let file = File::open(&path).map_err(StoreError::io("read", &path))?;
@@ -92,11 +93,11 @@ impl Entry {
         Ok(BlobReader { file: BufReader::with_capacity(1 << 16, file), path, checking: Some(state) })
     }
 
-    /// Reads a whole blob and compares its checksum.
+    /// Reads a whole blob and compares its checksum; where it differs, the entry is given up.
     pub fn read(&self, name: &str) -> Result<Vec<u8>, StoreError> {
         let (path, blob) = self.blob(name)?;
         let bytes = fs::read(&path).map_err(StoreError::io("read", &path))?;
-        if blake3::hash(&bytes).to_hex().as_str() == blob.blake3 { Ok(bytes) } else { Err(StoreError::damaged(&path, "its checksum differs")) }
+        if blake3::hash(&bytes).to_hex().as_str() == blob.blake3 { Ok(bytes) } else { Err(give_up(&path)) }
     }
 
     /// Where a blob lies, for programs that need a file. Not to be written.
@@ -110,6 +111,13 @@ impl Entry {
             None => Err(StoreError::damaged(&self.path.join(name), "the entry has no such blob")),
         }
     }
+}
+
+/// Spoils the entry of a blob whose content is not what was written, so that it is not found again.
+fn give_up(blob: &Path) -> StoreError {
+    // Where that fails too, the checksum will say the same next time.
+    let _ = fs::remove_file(blob.with_file_name(MANIFEST));
+    StoreError::damaged(blob, "its checksum differs; it will be made anew next time")
 }
 
 /// Takes the shared lock of an entry and notes the use; none where there is no entry.
@@ -154,8 +162,7 @@ impl Read for BlobReader {
             checking.left = checking.left.saturating_sub(count as u64);
             let ended = checking.left == 0 || (count == 0 && !buffer.is_empty());
             if ended && checking.hasher.finalize().to_hex().as_str() != checking.expected {
-                let damage = StoreError::damaged(&self.path, "its checksum differs");
-                return Err(io::Error::new(io::ErrorKind::InvalidData, damage));
+                return Err(io::Error::new(io::ErrorKind::InvalidData, give_up(&self.path)));
             }
         }
         Ok(count)

@@ -25,7 +25,7 @@ mod writer;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use serde_json::Value;
@@ -55,6 +55,8 @@ pub struct Store {
     dir: Arc<Path>,
     cap_bytes: u64,
     wait: Duration,
+    /// What was found damaged and not yet said.
+    damage: Arc<Mutex<Vec<String>>>,
 }
 
 impl Store {
@@ -70,7 +72,7 @@ impl Store {
         };
         fs::create_dir_all(&dir).map_err(StoreError::io("made", &dir))?;
         let free = free_bytes(&dir).map_err(StoreError::io("measured", &dir))?;
-        let mut store = Store { dir: dir.into(), cap_bytes: CAP_BYTES, wait: LOCK_WAIT };
+        let mut store = Store { dir: dir.into(), cap_bytes: CAP_BYTES, wait: LOCK_WAIT, damage: Arc::default() };
         store.check_format()?;
         let guard = store.lock()?;
         store.sweep(&guard)?;
@@ -102,16 +104,22 @@ impl Store {
     }
 
     /// What a stage made under a key, if it is there; it is not evicted while the entry lives. An
-    /// entry that is damaged is taken away, so that the error comes once and a miss follows.
+    /// entry that is damaged is taken away and counts as none: `take_damage` tells of it.
     pub fn get(&self, stage: &str, key: &str) -> Result<Option<Entry>, StoreError> {
         let path = self.entry_path(stage, key)?;
         match Entry::open_at(&path) {
             Err(damage @ StoreError::Damaged { .. }) => {
                 self.remove(stage, key)?;
-                Err(damage)
+                self.damage.lock().unwrap_or_else(PoisonError::into_inner).push(format!("{damage}; it was taken away and is made anew"));
+                Ok(None)
             }
             found => found,
         }
+    }
+
+    /// One sentence for each damaged entry that was found since the last call.
+    pub fn take_damage(&self) -> Vec<String> {
+        std::mem::take(&mut *self.damage.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Whether `get` would probably find something; counts as no use.

@@ -91,23 +91,26 @@ fn damage_is_said_once_and_then_missed() {
     let (_home, store) = store();
     let path = put(&store, "short", b"0123456789").path("motion").unwrap();
     File::options().write(true).open(&path).unwrap().set_len(3).unwrap();
-    let error = store.get("simulate", "short").unwrap_err();
-    assert!(matches!(error, StoreError::Damaged { .. }), "{error}");
-    assert!(error.to_string().contains("3 bytes instead of 10"), "{error}");
     assert!(store.get("simulate", "short").unwrap().is_none());
+    let told = store.clone().take_damage();
+    assert!(told.len() == 1 && told[0].contains("3 bytes instead of 10"), "{told:?}");
+    assert!(!store.contains("simulate", "short"));
 
     let entry = put(&store, "flipped", b"0123456789");
     fs::write(entry.path("motion").unwrap(), b"0123456780").unwrap();
     assert!(matches!(entry.read("motion"), Err(StoreError::Damaged { .. })));
     let fault = entry.open("motion").unwrap().read_to_end(&mut Vec::new()).unwrap_err();
     assert!(fault.to_string().contains("checksum"), "{fault}");
+    drop(entry);
+    assert!(store.get("simulate", "flipped").unwrap().is_none());
+    assert_eq!((store.take_damage().len(), store.take_damage().len()), (1, 0));
 
     for file in [entry::MANIFEST, entry::USED] {
         let entry = put(&store, "holed", b"x");
         fs::remove_file(entry.path("motion").unwrap().with_file_name(file)).unwrap();
         drop(entry);
-        assert!(matches!(store.get("simulate", "holed"), Err(StoreError::Damaged { .. })), "{file}");
-        assert!(store.get("simulate", "holed").unwrap().is_none());
+        assert!(store.get("simulate", "holed").unwrap().is_none(), "{file}");
+        assert_eq!(store.take_damage().len(), 1, "{file}");
     }
 }
 
