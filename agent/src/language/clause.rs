@@ -147,10 +147,16 @@ impl Clause {
 
     /// Takes how much more or less of one of `properties` is asked for, with the words that say how much.
     pub fn take_scale(&mut self, properties: &[Property]) -> Option<Scale> {
-        let (property, mut sign, form) = self.take(|s| match s {
-            Sense::Quality(property, sign, form) if properties.contains(property) => Some((*property, *sign, Some(*form))),
+        // The noun first: in "stronger gravity" the adjective says how much of it.
+        let noun = self.take(|s| match s {
             Sense::Property(property) if properties.contains(property) => Some((*property, 1.0, None)),
             _ => None,
+        });
+        let (property, mut sign, form) = noun.or_else(|| {
+            self.take(|s| match s {
+                Sense::Quality(property, sign, form) if properties.contains(property) => Some((*property, *sign, Some(*form))),
+                _ => None,
+            })
         })?;
         let mut compared = form == Some(Form::Comparative);
         if let Some(change) = self.take(|s| match s {
@@ -192,19 +198,46 @@ impl Clause {
     }
 
     /// Takes adverbs of strength: 0 where there are none, 1 for "hard", 2 for "very hard", -1 for "gently".
-    pub fn take_strength(&mut self) -> f64 {
+    fn take_strength(&mut self) -> f64 {
         let strengths = self.take_all(|s| match s {
             Sense::Strength(strength) => Some(*strength),
             _ => None,
         });
-        if strengths.is_empty() {
-            return 0.0;
-        }
         let degrees = self.take_all(|s| match s {
             Sense::Degree(degree) => Some(*degree),
             _ => None,
         });
-        strengths.iter().sum::<f64>() * degrees.iter().product::<f64>()
+        let degree: f64 = degrees.iter().product();
+        match (strengths.is_empty(), degrees.is_empty()) {
+            (true, true) => 0.0,
+            // "hop a little", "push it a lot"
+            (true, false) => {
+                if degree < 1.0 {
+                    -1.0
+                } else {
+                    1.0
+                }
+            }
+            (false, _) => strengths.iter().sum::<f64>() * degree,
+        }
+    }
+
+    /// How vigorous a verb is to be: 1 where nothing says so, [`HARD`] for "hard", its inverse for "gently" or "a bit".
+    pub fn take_vigour(&mut self) -> f64 {
+        HARD.powf(self.take_strength())
+    }
+
+    /// Takes "half its height", "twice its height": in heights of the object.
+    pub fn take_heights(&mut self) -> Option<f64> {
+        if !self.has(|s| *s == Sense::Property(Property::Height)) {
+            return None;
+        }
+        let factor = self.take(|s| match s {
+            Sense::Factor(factor) => Some(*factor),
+            _ => None,
+        });
+        self.take_sense(&Sense::Property(Property::Height));
+        Some(factor.unwrap_or(1.0))
     }
 
     /// Whether the clause, standing alone, asks for something.
@@ -217,6 +250,7 @@ impl Clause {
             | Sense::Unbuilt(_)
             | Sense::Gravity(_)
             | Sense::Surface(_)
+            | Sense::Springy(_)
             | Sense::View(_)
             | Sense::Pose(_)
             | Sense::Turn(_)
@@ -285,6 +319,9 @@ pub struct Scale {
     pub asked: bool,
 }
 
+/// "Hard" multiplies a speed by this, "gently" divides.
+pub const HARD: f64 = 1.75;
+
 /// What a comparative alone multiplies by: "softer" halves, "higher" is half as high again.
 pub fn step(property: Property) -> f64 {
     match property {
@@ -298,7 +335,7 @@ pub fn step(property: Property) -> f64 {
 pub fn qualifies(verb: Verb) -> &'static [Property] {
     match verb {
         Verb::Jump | Verb::Somersault => &[Property::Height, Property::Strength, Property::Hardness, Property::Size, Property::Speed],
-        Verb::Fall | Verb::Lift => &[Property::Height, Property::Size],
+        Verb::Fall | Verb::Drop | Verb::Lift => &[Property::Height, Property::Size],
         Verb::Push(_) | Verb::Pull | Verb::Blow => &[Property::Strength, Property::Hardness, Property::Speed, Property::Size],
         Verb::Throw => &[Property::Strength, Property::Hardness, Property::Speed, Property::Height, Property::Distance, Property::Size],
         Verb::Spin | Verb::Roll => &[Property::Speed, Property::Strength, Property::Hardness],
@@ -307,12 +344,24 @@ pub fn qualifies(verb: Verb) -> &'static [Property] {
     }
 }
 
+/// Stretches between separators. "Without spinning" after another verb begins one too.
+fn segments(phrases: &[Phrase]) -> Vec<&[Phrase]> {
+    let mut segments = Vec::new();
+    for stretch in phrases.split(|p| p.sense == Sense::Separator) {
+        let verb = |i: usize| matches!(stretch.get(i).map(|p| &p.sense), Some(Sense::Verb(_)));
+        let denial = (1..stretch.len()).find(|&i| stretch[i].sense == Sense::Negation && verb(i + 1) && (0..i).any(verb));
+        let (first, second) = stretch.split_at(denial.unwrap_or(stretch.len()));
+        segments.extend([first, second].into_iter().filter(|s| !s.is_empty()));
+    }
+    segments
+}
+
 /// Splits phrases into clauses. A stretch between separators that asks for nothing by itself belongs to the clause
 /// before it ("up and to the left"), or to the next one where it is the first ("after a second, push it").
 pub fn split(phrases: Vec<Phrase>) -> Vec<Clause> {
     let mut clauses: Vec<Clause> = Vec::new();
     let mut pending: Option<Clause> = None;
-    for segment in phrases.split(|p| p.sense == Sense::Separator).filter(|s| !s.is_empty()) {
+    for segment in segments(&phrases) {
         let mut clause = Clause::new(segment.to_vec());
         let belongs = !clause.has_head()
             || clause.starts_with_condition()

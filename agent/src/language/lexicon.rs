@@ -10,8 +10,12 @@ pub enum Verb {
     Jump,
     /// A jump with one turn in the air.
     Somersault,
-    /// Falls from a height, or comes back down after a jump.
+    /// Comes down: by itself after a jump, else from a height.
     Fall,
+    /// Falls from a height.
+    Drop,
+    /// Leans so far that it falls over.
+    Topple,
     /// Starts higher.
     Lift,
     /// Gets a speed along the ground; the strength says how hard the word itself is.
@@ -262,6 +266,8 @@ pub enum Sense {
     Unbuilt(Unbuilt),
     /// Free fall, m/s2.
     Gravity(f64),
+    /// Restitution of a surface.
+    Springy(f64),
     /// Friction of a surface.
     Surface(f64),
     /// A direction.
@@ -377,14 +383,16 @@ pub const SECTIONS: &[Section] = &[
         entries: entries! {
             Sense::Verb(Verb::Jump) => "jump|jumps|jumping|jumped|jump up and down|jumps up and down|hop up and down|hop|hops|hopping|leap|leaps|leaping",
             Sense::Verb(Verb::Somersault) => "somersault|somersaults|backflip|frontflip|back flip|front flip",
-            Sense::Verb(Verb::Fall) => "fall|falls|falling|fell|fall back|falls back|falling back|fall back down|back down|down again|back to the ground|back on the ground|back to the table|back onto the table|back on the table|back to the floor|back to earth|falls back down|fall down|falls down|come back down|comes back down|come down|comes down|go down again|drop|drops|dropped|dropping|drop down|drop back|land|lands|landing|lands again|land again|bounce|bounces|bouncing",
+            Sense::Verb(Verb::Fall) => "fall|falls|falling|fell|fall back|falls back|falling back|fall back down|back down|down again|back to the ground|back on the ground|back to the table|back onto the table|back on the table|back to the floor|falls back down|fall down|falls down|come back down|comes back down|come down|comes down|go down again|land|lands|landing|lands again|land again|bounce|bounces|bouncing",
+            Sense::Verb(Verb::Drop) => "drop|drops|dropped|dropping|drop down",
+            Sense::Verb(Verb::Topple) => "topple|topples|topple over|tip over|tips over|tip it over|fall over|falls over|knock it over|knock over|keel over",
             Sense::Verb(Verb::Lift) => "lift|lifts|lifted|lift up|raise|raises|raised|raise up|hoist|pick up|elevate",
             Sense::Verb(Verb::Push(0.0)) => "push|pushes|pushed|pushing|slide|slides|slid|sliding|drive|drives",
             Sense::Verb(Verb::Push(1.0)) => "shove|shoves|shoved|kick|kicks|kicked|hit|hits|strike|strikes|slam|ram|knock|knocks|punch",
             Sense::Verb(Verb::Push(-1.0)) => "nudge|nudges|nudged|poke|pokes|tap|taps|bump|bumps",
             Sense::Verb(Verb::Pull) => "pull|pulls|pulled|pulling|drag|drags|dragged|tug|tugs|accelerate|accelerates",
             Sense::Verb(Verb::Throw) => "throw|throws|threw|thrown|throwing|toss|tosses|tossed|fling|flings|hurl|hurls|chuck|lob|launch|launches|catapult",
-            Sense::Verb(Verb::Spin) => "spin|spins|spinning|spun|spin around|spins around|spin round|twirl|twirls|twirling|whirl|whirls|rotating|turning|pirouette",
+            Sense::Verb(Verb::Spin) => "spin|spins|spinning|spun|spin around|spins around|spin round|twirl|twirls|twirling|whirl|whirls|rotating|turning|while spinning|while rotating|while turning|pirouette",
             Sense::Verb(Verb::Roll) => "roll|rolls|rolling|tumble|tumbles|tumbling",
             Sense::Verb(Verb::Turn) => "turn|turns|turned|rotate|rotates|rotated",
             Sense::Verb(Verb::Tilt) => "tilt|tilts|tilted|lean|leans|tip|tips|tipped|incline|inclined",
@@ -397,7 +405,7 @@ pub const SECTIONS: &[Section] = &[
             Sense::Verb(Verb::Reset) => "put it back|put back|move it back where it was|where it was",
             Sense::Pose(Pose::UpsideDown) => "upside down|on its head|head down|bottom up|flip|flipped|flip over|flip it over|flips over|turn over|turn it over|head first",
             Sense::Pose(Pose::OnItsSide) => "on its side|onto its side|lying down|lie down|lay down|lay it down|lay it on its side|lie on its side|lay on its side",
-            Sense::Pose(Pose::Upright) => "upright|stand up|stands up|standing up|right way up|the right way up",
+            Sense::Pose(Pose::Upright) => "upright|stand it up|stand it upright|stand upright|set it upright|stand up|stands up|standing up|right way up|the right way up",
         },
     },
     Section {
@@ -428,12 +436,13 @@ pub const SECTIONS: &[Section] = &[
         title: "How much",
         entries: entries! {
             Strength(-1.0) => "gently|softly|lightly|carefully|tenderly|a gentle|gentle",
-            Strength(1.0) => "strongly|forcefully|firmly|violently|powerfully|vigorously|with force|with all its might",
+            Strength(1.0) => "strongly|forcefully|firmly|violently|powerfully|vigorously|with force|with all its might|as hard as you can|as hard as possible|with full force",
             Degree(0.25) => "a tiny bit|a touch|ever so slightly|barely",
             Degree(0.5) => "a bit|a little|a little bit|slightly|somewhat|a tad|little|bit",
             Degree(1.0) => "quite|rather|fairly|pretty|noticeably",
             Degree(2.0) => "very|much|a lot|lots|way|far|really|considerably|significantly|a great deal|so much",
-            Degree(3.0) => "extremely|very much|very very|enormously|hugely|super|incredibly|massively|as hard as you can",
+            Degree(3.0) => "extremely|very much|very very|enormously|hugely|super|incredibly|massively",
+            Factor(1.0) => "once",
             Factor(2.0) => "twice|double|doubled|doubles|two times",
             Factor(3.0) => "triple|thrice",
             Factor(4.0) => "quadruple|four times",
@@ -497,7 +506,7 @@ pub const SECTIONS: &[Section] = &[
         title: "Properties by name",
         entries: entries! {
             Sense::Property(Property::Stiffness) => "stiffness|young modulus|youngs modulus|elastic modulus|modulus|rigidity",
-            Sense::Property(Property::Density) => "density|weight|mass",
+            Sense::Property(Property::Density) => "density|weight|mass|weigh|weighs",
             Sense::Property(Property::Gravity) => "gravity|gravitation|the pull of gravity",
             Sense::Property(Property::Friction) => "friction|slipperiness",
             Sense::Property(Property::Bounce) => "bounciness|restitution|rebound",
@@ -541,7 +550,7 @@ pub const SECTIONS: &[Section] = &[
     Section {
         title: "Worlds and ground",
         entries: entries! {
-            Gravity(9.81) => "earth|on earth|normal gravity|earth gravity",
+            Gravity(9.81) => "earth|on earth|back on earth|back to earth|normal gravity|earth gravity",
             Gravity(1.62) => "moon|the moon|on the moon|lunar|moon gravity|lunar gravity",
             Gravity(3.71) => "mars|on mars|martian|mars gravity",
             Gravity(24.79) => "jupiter|on jupiter|jupiter gravity",
@@ -549,6 +558,7 @@ pub const SECTIONS: &[Section] = &[
             Surface(0.02) => "ice|on ice|icy|on the ice|on an icy floor",
             Surface(0.0) => "frictionless|no friction|without friction|zero friction",
             Surface(0.6) => "carpet|on carpet|on a carpet",
+            Sense::Springy(0.8) => "trampoline|on a trampoline|on the trampoline",
             Surface(0.9) => "sandpaper|on sandpaper",
             Sense::Ground => "ground|floor|table|surface|plinth|pedestal|the desk|desk|shelf|tabletop|table top",
         },
@@ -565,7 +575,7 @@ pub const SECTIONS: &[Section] = &[
             Sense::View(View::Back) => "from behind|from the back|back view|rear view|from the rear",
             Sense::View(View::Left) => "from the left|from its left|left view|from the left side|from the side|from a side|side view|from one side|from the left hand side",
             Sense::View(View::Right) => "from the right|from its right|right view|from the right side|from the other side|from the right hand side",
-            Sense::View(View::Above) => "from above|from the top|top view|from overhead|bird eye view|birds eye view|from up high|from higher up|top down",
+            Sense::View(View::Above) => "from above|from the top|top view|from overhead|bird eye view|birds eye view|and above|top down",
             Sense::View(View::Below) => "from below|from the ground|worm eye view|worms eye view|from underneath|low angle|from low down",
             Sense::View(View::Auto) => "reset the camera|reset camera|camera auto|default camera|automatic camera|default view|reset the view|reset view|usual view|normal view",
         },
@@ -592,6 +602,10 @@ pub const SECTIONS: &[Section] = &[
             Turn(TurnWord::Redo) => "redo|redo that|redo it|undo the undo|put that back|go forward again|redo the last",
             Turn(TurnWord::BackTo) => "back to version|go back to version|return to version|revert to version|back to|go back to|return to|revert to|restore|go to version|switch to version|version|as it was in",
             Turn(TurnWord::First) => "back to the first|go back to the first|back to the first version|go back to the first version|back to the start|go back to the start|back to the beginning|back to the original|go back to the original|return to the first|start over|start again|start from scratch|from the beginning|back to square one|reset|reset everything|reset all|the first version|back to the first one",
+            Sense::Version(2) => "the second version|second version",
+            Sense::Version(3) => "the third version|third version",
+            Sense::Version(4) => "the fourth version|fourth version",
+            Sense::Version(5) => "the fifth version|fifth version",
             Turn(TurnWord::OtherWay) => "the other way|other way|the other way round|the other way around|other way round|other way around|the opposite way|opposite way|the opposite direction|in the opposite direction|opposite direction|other direction|the other direction|in the other direction|wrong way|wrong direction|the wrong way|that is the wrong way|thats the wrong way|reverse it|reverse that|reverse direction|reverse the direction|invert it|invert the direction|the reverse|opposite|the opposite",
             Turn(TurnWord::Again) => "again|once more|one more time|same again|repeat|repeat that|do it again|do that again|and again|once again",
         },
@@ -622,7 +636,7 @@ pub const SECTIONS: &[Section] = &[
             Sense::Question => "why|how|what|where|who|which|whose",
             Sense::Instead => "instead|rather than that|not that way",
             Sense::Separator => "and|then|,|;|but|also|and then|plus|after that|afterwards|next|finally|as well as|at the same time|meanwhile|followed by",
-            Filler => "please|pls|kindly|thanks|thank you|thx|hey|hi|hello|ok|okay|well|so|now|right now|just|simply|maybe|perhaps|can|could|would|should|will|shall|must|you|i|we|us|me|id|lets|let|want|wants|like|need|needs|to see|see|make|makes|making|made|so that|have|has|having|get|gets|getting|give|gives|cause|do|does|doing|become|becomes|be|is|are|being|go|goes|going|try|point|points|pointing|change|changes|set|adjust|same|the same|the same thing|too|as well|even|still|only|than|than before|than that|than now|than this|than it was|as before|this time|for me|actually|hmm|oh|yes|yeah|yep|sure|what if|what about|how about|alright|approximately|roughly|exactly|about it|start|starts|starting|begin|begins|value|in the direction|own|something|made of|made out of|material|somehow|again please|elastically|by itself|on its own|under",
+            Filler => "please|pls|kindly|thanks|thank you|thx|hey|hi|hello|ok|okay|well|so|now|right now|just|simply|maybe|perhaps|can|could|would|should|will|shall|must|you|i|we|us|me|id|lets|let|want|wants|like|need|needs|to see|see|make|makes|making|made|so that|have|has|having|get|gets|getting|give|gives|cause|do|does|doing|become|becomes|be|is|are|being|were|go|goes|going|try|point|points|pointing|change|changes|set|adjust|same|the same|the same thing|too|as well|even|still|only|than|than before|than that|than now|than this|than it was|as before|this time|for me|actually|hmm|oh|yes|yeah|yep|sure|what if|what about|how about|alright|approximately|roughly|exactly|about it|start|starts|starting|begin|begins|value|in the direction|own|something|made of|made out of|material|somehow|step|steps|nope|nah|elastically|by itself|on its own|under",
         },
     },
 ];

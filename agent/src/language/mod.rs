@@ -12,6 +12,8 @@ mod directions;
 mod draft;
 mod lexicon;
 mod numbers;
+#[cfg(test)]
+mod page;
 mod phrases;
 mod say;
 mod session;
@@ -101,6 +103,7 @@ fn refused(reason: String, reading: &Reading) -> Reply {
 
 /// Reads clause by clause into edits, starting from `start`.
 fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
+    let undone = start != *context.spec;
     let mut draft = Draft::new(context, start);
     let mut clauses = clause::split(reading.phrases.clone());
     // The world of the turn holds for all of it: "jump 30 cm and do it on the moon" is 30 cm on the moon.
@@ -125,11 +128,17 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
     ignored.extend(draft.missing.iter().cloned());
     let not_understood = words(reading, ignored.into_iter());
     let edits = context.spec.edits_to(&draft.spec);
+    if let Err(error) = context.spec.apply(&edits) {
+        return Reply::Refused { reason: error.to_string(), not_understood };
+    }
     let corrections = reading.corrections.iter().map(|(_, said)| said.clone());
     if !understood {
         return Reply::Refused { reason: reason(&draft, &not_understood), not_understood };
     }
     let mut gloss: Vec<String> = corrections.collect();
+    if undone {
+        gloss.push("the turn before is undone".to_owned());
+    }
     gloss.append(&mut draft.gloss);
     gloss.append(&mut draft.refusals);
     if edits.is_empty() && gloss.is_empty() {

@@ -190,6 +190,8 @@ fn part_of_one(word: &str) -> Option<f64> {
         "third" | "thirds" => 1.0 / 3.0,
         "quarter" | "quarters" | "fourth" | "fourths" => 0.25,
         "fifth" | "fifths" => 0.2,
+        "sixth" | "sixths" => 1.0 / 6.0,
+        "eighth" | "eighths" => 0.125,
         "tenth" | "tenths" => 0.1,
         _ => return None,
     })

@@ -82,6 +82,7 @@ pub fn read(mut tokens: Vec<Token>, names: &Names) -> Reading {
         at += length;
     }
     lead_measures(&mut phrases);
+    scale_gravity(&mut phrases);
     tell_times(&mut phrases);
     Reading { tokens, phrases, corrections }
 }
@@ -105,12 +106,11 @@ fn pattern(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
 
 fn measure(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
     let (quantity, end) = numbers::quantity(tokens, at)?;
-    // "half" and "a third" alone are factors, which the lexicon reads.
-    if quantity.dimension == Dimension::Plain && tokens[at].number.is_none() && !numbers::is_number_word(&tokens[at].word) && quantity.value < 1.0 {
-        return None;
-    }
+    // "half", "a third", "two thirds" alone are shares of something.
+    let share = quantity.dimension == Dimension::Plain && tokens[at].number.is_none() && quantity.value > 0.0 && quantity.value < 1.0;
     let sense = match quantity.dimension {
         Dimension::Times => Sense::Factor(quantity.value),
+        _ if share => Sense::Factor(quantity.value),
         _ => Sense::Measure(quantity, None),
     };
     Some((sense, end - at))
@@ -171,6 +171,17 @@ fn lead_measures(phrases: &mut [Phrase]) {
         phrases[i].sense = Sense::Measure(quantity, lead);
         for between in &mut phrases[back..i] {
             between.sense = Sense::Filler;
+        }
+    }
+}
+
+/// A bare number before "gravity" says how many times it: "a sixth of the gravity".
+fn scale_gravity(phrases: &mut [Phrase]) {
+    for i in 0..phrases.len() {
+        let Sense::Measure(Quantity { value, dimension: Dimension::Plain }, _) = phrases[i].sense else { continue };
+        let noun = phrases[i + 1..].iter().find(|p| !matches!(p.sense, Sense::Article | Sense::Preposition(Preposition::Of)));
+        if noun.is_some_and(|p| p.sense == Sense::Property(Property::Gravity)) {
+            phrases[i].sense = Sense::Factor(value);
         }
     }
 }

@@ -9,9 +9,7 @@ use glam::DVec3;
 use phystalk::spec::{Auto, presets};
 
 /// Stiffness taken for "softer" where the automatic one is not known: before the first run of a scene.
-const YOUNG_BEFORE_RUN_PA: f64 = 2e5;
-/// A jump that "higher" makes where there is none, in heights of the object: the usual one.
-const JUMP_HEIGHTS: f64 = 0.4;
+pub const YOUNG_BEFORE_RUN_PA: f64 = 2e5;
 
 /// Every property that stands without a verb.
 const ALL: &[Property] = &[
@@ -47,6 +45,10 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusa
             draft.gloss.push(line);
         }
         any = true;
+    }
+    if clause.take_measure(Dimension::Mass).is_some() {
+        return Err("a mass is not set directly, for it depends on the solid that is made of the capture: \"density 500 kg/m³\", \"twice as heavy\""
+            .to_owned());
     }
     if let Some((fps, _)) = clause.take_measure(Dimension::FrameRate) {
         clause.take_scale(&[Property::FrameRate]);
@@ -232,7 +234,25 @@ fn set_young(clause: &mut Clause, draft: &mut Draft, young_pa: f64) -> Result<()
 
 /// A preset by its name; "elastic" alone is the automatic stiffness of things of no named material.
 pub fn material(name: &'static str, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    // "as soft as jelly", "the stiffness of rubber": that property alone.
+    let like = clause.has(|s| *s == Sense::As) || clause.has(|s| matches!(s, Sense::Property(_)));
+    let times = clause.has(|s| matches!(s, Sense::Factor(_)));
+    let only = if like { clause.take_scale(&[Property::Stiffness, Property::Hardness, Property::Density]) } else { None };
     for object in draft.subjects(clause)? {
+        if let (Some(scale), Some(preset)) = (only, presets::elastic(name)) {
+            let ratio = if times { scale.ratio } else { 1.0 };
+            let (density, young) = (say::tidy(preset.density_kg_m3 * ratio), say::tidy(preset.young_pa * ratio));
+            let share = if times { format!("{} times ", say::short(ratio)) } else { String::new() };
+            let line = if scale.property == Property::Density {
+                draft.elastic(object).density_kg_m3 = density;
+                format!("{} has {share}the density of {name}: {} kg/m³", draft.name(object), say::short(density))
+            } else {
+                draft.elastic(object).young_pa = Auto::Value(young);
+                format!("{} has {share}the stiffness of {name}: Young's modulus {}", draft.name(object), say::pressure(young))
+            };
+            draft.gloss.push(line);
+            continue;
+        }
         let line = match presets::elastic(name) {
             Some(preset) => {
                 *draft.elastic(object) = preset.material();
@@ -262,7 +282,7 @@ fn height(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result<(), Re
         } else if gap > 1e-3 {
             super::place::raise(draft, object, gap * scale.ratio)?;
         } else if scale.ratio > 1.0 {
-            let usual = JUMP_HEIGHTS * draft.facts(object).height_m();
+            let usual = super::motion::JUMP_HEIGHTS * draft.facts(object).height_m();
             set_jump(draft, object, 0.0, usual * scale.ratio);
         } else {
             return Err(format!("{} neither jumps nor drops, so it cannot be lower", draft.name(object)));
@@ -274,8 +294,8 @@ fn height(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result<(), Re
 fn set_jump(draft: &mut Draft, object: usize, before_m: f64, after_m: f64) {
     let up = (2.0 * draft.gravity_for_heights_m_s2() * after_m).sqrt();
     draft.set_speed_along(object, DVec3::Z, up);
-    let from = if before_m > 0.0 { format!("{} to ", say::metres(before_m)) } else { String::new() };
-    let line = format!("{} jumps {from}{}: {} up", draft.name(object), say::metres(after_m), say::speed(up));
+    let from = if before_m > 0.0 { format!(" instead of {}", say::metres(before_m)) } else { String::new() };
+    let line = format!("{} jumps {}{from}: {} up", draft.name(object), say::metres(after_m), say::speed(up));
     draft.gloss.push(line);
 }
 
@@ -383,7 +403,7 @@ fn bounce(scale: Scale, draft: &mut Draft) {
     set_restitution(draft, after);
 }
 
-fn set_restitution(draft: &mut Draft, restitution: f64) {
+pub fn set_restitution(draft: &mut Draft, restitution: f64) {
     let restitution = say::tidy(restitution);
     draft.spec.world.ground.restitution = restitution;
     for collider in &mut draft.spec.colliders {

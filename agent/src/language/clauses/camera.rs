@@ -14,17 +14,20 @@ const SIDE_ELEVATION_DEG: f64 = 12.0;
 const ABOVE_ELEVATION_DEG: f64 = 80.0;
 const BELOW_ELEVATION_DEG: f64 = 2.0;
 /// An orbit that nobody gave, degrees a second.
-const ORBIT_DEG_S: f64 = 45.0;
+pub const ORBIT_DEG_S: f64 = 45.0;
 /// "Move the camera to the left" and nothing more, degrees about the target.
-const STEP_DEG: f64 = 30.0;
+pub const STEP_DEG: f64 = 30.0;
 
 /// Whether a clause is about the camera, whatever its verb.
 pub fn is_about_camera(clause: &Clause) -> bool {
     let verbs = clause.has(|s| matches!(s, Sense::Verb(Verb::Look | Verb::Zoom(_) | Verb::Orbit)));
     let object = clause.has(|s| matches!(s, Sense::Objects(_)));
-    let moves = clause.has(|s| matches!(s, Sense::Verb(Verb::Throw | Verb::Jump | Verb::Push(_) | Verb::Pull | Verb::Fall)));
+    let moves = clause.has(|s| matches!(s, Sense::Verb(Verb::Throw | Verb::Jump | Verb::Push(_) | Verb::Pull | Verb::Fall | Verb::Drop)));
     let closer = clause.has(|s| matches!(s, Sense::Quality(Property::Distance | Property::FieldOfView, ..) | Sense::Property(Property::FieldOfView)));
-    verbs || clause.has(|s| *s == Sense::Camera || *s == Sense::View(View::Auto)) || (closer && !moves && !object)
+    let from_away = clause.has(|s| *s == Sense::Direction(Direction::Away))
+        && clause.has(|s| matches!(s, Sense::Measure(q, Some(Preposition::From | Preposition::At)) if q.dimension == Dimension::Length))
+        && !clause.has(|s| matches!(s, Sense::Verb(_)));
+    verbs || from_away || clause.has(|s| *s == Sense::Camera || *s == Sense::View(View::Auto)) || (closer && !moves && !object)
 }
 
 /// Where the camera stands, about its target: distance, azimuth counter-clockwise from +x, elevation; radians.
@@ -77,7 +80,7 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     views(clause, draft, object, &mut around, &mut said);
     distance(clause, &mut around, &mut said);
     field_of_view(clause, &mut camera, &mut said);
-    orbit(clause, &mut camera, &mut around, &mut said);
+    orbit(clause, draft.duration_s(), &mut camera, &mut around, &mut said);
     step(clause, &mut around, &mut said);
     if said.is_empty() {
         return Err("what about the camera? \"from above\", \"closer\", \"orbit\", \"wider\", \"reset the camera\"".to_owned());
@@ -140,6 +143,9 @@ fn distance(clause: &mut Clause, around: &mut Around, said: &mut Vec<String>) {
     let zoom = clause.take_verb(|v| matches!(v, Verb::Zoom(_)));
     let scale = clause.take_scale(&[Property::Distance]);
     let length = clause.take_measure(Dimension::Length);
+    if length.is_some() {
+        clause.take_sense(&Sense::Direction(Direction::Away));
+    }
     let sign = match zoom {
         Some(Verb::Zoom(sign)) => -sign,
         _ => scale.map_or(0.0, |s| s.sign),
@@ -178,7 +184,7 @@ fn field_of_view(clause: &mut Clause, camera: &mut Camera, said: &mut Vec<String
 }
 
 /// "orbit", "orbit clockwise at 30 deg/s", "go around it by 90 degrees".
-fn orbit(clause: &mut Clause, camera: &mut Camera, around: &mut Around, said: &mut Vec<String>) {
+fn orbit(clause: &mut Clause, duration_s: f64, camera: &mut Camera, around: &mut Around, said: &mut Vec<String>) {
     if clause.take_verb(|v| matches!(v, Verb::Orbit)).is_none() {
         return;
     }
@@ -191,8 +197,13 @@ fn orbit(clause: &mut Clause, camera: &mut Camera, around: &mut Around, said: &m
         said.push(format!("goes round by {}°", say::short(sign * angle.to_degrees())));
         return;
     }
-    let rate = clause.take_measure(Dimension::AngularSpeed).map(|(w, _)| w.to_degrees());
     let ratio = clause.take_scale(&[Property::Speed]).map_or(1.0, |s| s.ratio);
+    // "orbit once", "twice": in the time that it runs
+    let times = clause.take(|s| match s {
+        Sense::Factor(times) => Some(360.0 * times / duration_s),
+        _ => None,
+    });
+    let rate = clause.take_measure(Dimension::AngularSpeed).map(|(w, _)| w.to_degrees()).or(times);
     let usual = if camera.orbit_deg_s == 0.0 { ORBIT_DEG_S } else { camera.orbit_deg_s.abs() };
     camera.orbit_deg_s = say::tidy(sign * rate.unwrap_or(usual * ratio));
     said.push(format!("goes round at {}° a second", say::short(camera.orbit_deg_s)));
@@ -201,7 +212,8 @@ fn orbit(clause: &mut Clause, camera: &mut Camera, around: &mut Around, said: &m
 /// "move the camera to the left", "camera up by 20 degrees".
 fn step(clause: &mut Clause, around: &mut Around, said: &mut Vec<String>) {
     let verb = clause.take_verb(|v| matches!(v, Verb::Move | Verb::Turn | Verb::Tilt | Verb::Lift));
-    let directions = clause.take_directions();
+    let mut directions = clause.take_directions();
+    directions.extend(clause.take_scale(&[Property::Height]).map(|s| if s.ratio > 1.0 { Direction::Up } else { Direction::Down }));
     if directions.is_empty() {
         if verb == Some(Verb::Turn)
             && let Some((angle, _)) = clause.take_measure(Dimension::Angle)

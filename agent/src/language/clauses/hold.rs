@@ -116,11 +116,11 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
                 draft.object(object).spin_rad_s = [0.0; 3];
                 "does not spin"
             }
-            Some(Verb::Turn | Verb::Tilt) => {
+            Some(Verb::Turn | Verb::Tilt | Verb::Topple) => {
                 draft.object(object).rotate_deg = [0.0; 3];
                 "is not turned"
             }
-            Some(Verb::Fall | Verb::Lift) => {
+            Some(Verb::Fall | Verb::Drop | Verb::Lift) => {
                 draft.set_gap_m(object, 0.0);
                 "starts on what is below it"
             }
@@ -132,7 +132,7 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
                 let at_s = say::tidy(at_s.unwrap_or_default());
                 let event = draft.free_name("stop", |spec, name| spec.events.iter().any(|e| e.name == name));
                 draft.spec.events.push(Event { name: event, at_s, object: name.clone(), push_m_s: None, velocity_m_s: Some([0.0; 3]) });
-                "is stopped there"
+                "is stopped"
             }
             None | Some(Verb::Rest) => {
                 rest(draft, object);

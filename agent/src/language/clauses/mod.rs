@@ -55,10 +55,8 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft, tokens: &[Token]) -> R
     if clause.has(|s| matches!(s, Sense::View(_))) {
         camera::understand(clause, draft)?;
     }
-    if clause.has(|s| matches!(s, Sense::Direction(_)))
-        && !clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(_)))
-        && !turns::aim(clause, draft)?
-    {
+    let directed = clause.has(|s| matches!(s, Sense::Direction(_))) && !clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(_)));
+    if !turns::amend(clause, draft)? && directed {
         return Err("which motion goes that way? \"push it to the left\"".to_owned());
     }
     Ok(())
@@ -70,7 +68,8 @@ fn verbs(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
         match verb {
             light if adjust::is_light(light, clause) => {}
             Verb::Fall if place::falls_by_itself(clause, draft) => {}
-            Verb::Fall => place::drop(clause, draft)?,
+            Verb::Fall | Verb::Drop => place::drop(clause, draft)?,
+            Verb::Topple => place::topple(clause, draft)?,
             Verb::Lift => place::lift(clause, draft)?,
             Verb::Move => place::shift(clause, draft)?,
             Verb::Turn | Verb::Tilt => place::turn(verb, clause, draft)?,

@@ -4,7 +4,7 @@
 //! "make it jump and push it left" does both. With a time it becomes an event. Amounts that are not given follow the
 //! object's size by Froude's rule (speed ~ sqrt(length)), so that small things do not shoot out of the picture.
 
-use super::super::clause::{Clause, Scale, qualifies};
+use super::super::clause::{Clause, HARD, Scale, qualifies};
 use super::super::directions::from_side;
 use super::super::draft::{Draft, Refusal};
 use super::super::lexicon::{Direction, Moment, Property, Sense, Verb};
@@ -15,17 +15,15 @@ use phystalk::spec::{ColliderShape, Force, Until};
 use std::f64::consts::TAU;
 
 /// Height of a jump that nobody gave, in heights of the object.
-const JUMP_HEIGHTS: f64 = 0.4;
+pub const JUMP_HEIGHTS: f64 = 0.4;
 /// Speed of a push that nobody gave, for an object of one metre: it slides 0.8 m at the default friction of 0.15.
-const PUSH_M_S: f64 = 1.5;
+pub const PUSH_M_S: f64 = 1.5;
 /// Speed of a throw that nobody gave, for an object of one metre: 45 degrees up, it flies 0.8 m.
-const THROW_M_S: f64 = 2.8;
+pub const THROW_M_S: f64 = 2.8;
 /// A spin that nobody gave: one turn a second.
 const SPIN_RAD_S: f64 = TAU;
 /// A pull that nobody gave: it moves the object from rest at the default friction, slowly enough to be watched.
-const PULL_M_S2: f64 = 3.0;
-/// "Hard" multiplies by this, "gently" divides.
-const HARD: f64 = 1.75;
+pub const PULL_M_S2: f64 = 3.0;
 
 /// Reads one verb of motion with all that belongs to it.
 pub fn understand(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
@@ -64,8 +62,8 @@ fn moment(clause: &mut Clause, draft: &Draft, object: usize) -> Result<Option<f6
 
 /// How strong a verb is to be: adverbs and adjectives together, 1 where there are none.
 fn strength(verb: Verb, clause: &mut Clause) -> (f64, Option<Scale>) {
-    let adverbs = HARD.powf(clause.take_strength());
     let scale = clause.take_scale(qualifies(verb));
+    let adverbs = clause.take_vigour();
     let hard = match scale {
         // "hard" is an adverb here, not a material; "very hard" is hard twice over.
         Some(scale) if scale.property == Property::Hardness && !scale.compared => HARD.powf(scale.ratio.log2()),
@@ -77,7 +75,9 @@ fn strength(verb: Verb, clause: &mut Clause) -> (f64, Option<Scale>) {
 
 fn jump(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<f64>) -> Result<(), Refusal> {
     let height = clause.take_measure_or_plain(Dimension::Length).map(|(h, _)| h);
+    let heights = clause.take_heights();
     let speed = clause.take_measure(Dimension::Speed).map(|(v, _)| v);
+    clause.take(|s| (*s == Sense::Factor(1.0)).then_some(()));
     let mut directions = clause.take_directions();
     directions.retain(|d| !matches!(d, Direction::Up | Direction::Axis(2, true)));
     if directions.contains(&Direction::Down) {
@@ -90,7 +90,7 @@ fn jump(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<
         let usual = JUMP_HEIGHTS * draft.facts(object).height_m();
         // "higher" starts from the jump that is there.
         let from = if scale.is_some_and(|s| s.compared) && rising > 0.0 && at_s.is_none() { rising * rising / (2.0 * gravity) } else { usual };
-        let rise = match (height, speed) {
+        let rise = match (height.or(heights.map(|n| n * draft.facts(object).height_m())), speed) {
             (Some(height), _) => height.abs(),
             (None, Some(speed)) => speed * speed / (2.0 * gravity),
             (None, None) => from * strength,
@@ -163,11 +163,14 @@ fn push(strength_of_word: f64, clause: &mut Clause, draft: &mut Draft, objects: 
     }
     let replace = clause.take_sense(&Sense::Instead);
     for &object in objects {
-        let usual = PUSH_M_S * draft.size_m(object).sqrt() * HARD.powf(strength_of_word);
+        // "Kick it very hard" is no harder than "very hard"; a factor that is said holds as said.
+        let said_so = scale.is_some_and(|s| s.compared);
+        let vigour = if said_so { strength } else { (strength * HARD.powf(strength_of_word)).clamp(HARD.powi(-2), HARD.powi(2)) };
+        let usual = PUSH_M_S * draft.size_m(object).sqrt() * vigour;
         let assumed = if directions.is_empty() { " (no direction said)" } else { "" };
         let wanted = if directions.is_empty() { &[Direction::Forward][..] } else { &directions };
         let heading = draft.frame(object).heading(wanted).ok_or("those directions cancel out")?;
-        let mut speed = speed.unwrap_or(usual * strength);
+        let mut speed = speed.unwrap_or(usual);
         if off_edge {
             speed = speed.max(speed_to_edge(draft, object, heading.unit)?);
         }
@@ -259,8 +262,8 @@ fn spin(verb: Verb, clause: &mut Clause, draft: &mut Draft, objects: &[usize], a
     }
     let rate = clause.take_measure(Dimension::AngularSpeed).map(|(w, _)| w);
     let directions = clause.take_directions();
-    let strength_of_adverbs = HARD.powf(clause.take_strength());
     let scale = clause.take_scale(qualifies(Verb::Spin));
+    let strength_of_adverbs = clause.take_vigour();
     for &object in objects {
         let frame = draft.frame(object);
         let left = frame.unit(Direction::Left);

@@ -2,22 +2,22 @@
 
 use super::super::clause::{Clause, qualifies};
 use super::super::draft::{Draft, Refusal, rotate_deg, rotation};
-use super::super::lexicon::{Direction, Pose, Preposition, Property, Sense, Verb};
+use super::super::lexicon::{Direction, Pose, Preposition, Property, Sense, Verb, View};
 use super::super::numbers::Dimension;
 use super::super::say;
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// A drop that nobody measured, in heights of the object.
-const DROP_HEIGHTS: f64 = 1.0;
+pub const DROP_HEIGHTS: f64 = 1.0;
 /// A lift that nobody measured.
-const LIFT_HEIGHTS: f64 = 0.5;
+pub const LIFT_HEIGHTS: f64 = 0.5;
 /// A move that nobody measured, in longest sides of the object.
-const MOVE_SIZES: f64 = 0.5;
+pub const MOVE_SIZES: f64 = 0.5;
 /// "Tilt it" and nothing more.
-const TILT_RAD: f64 = TAU / 24.0;
+pub const TILT_RAD: f64 = TAU / 24.0;
 /// "Turn it" and nothing more.
-const TURN_RAD: f64 = TAU / 4.0;
+pub const TURN_RAD: f64 = TAU / 4.0;
 
 /// Whether a word that makes it fall only tells what a jump does by itself: "jump and fall back to the table".
 pub fn falls_by_itself(clause: &mut Clause, draft: &Draft) -> bool {
@@ -41,17 +41,20 @@ pub fn drop(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
         return Err("a drop starts at the start; \"hold it\" and \"let go at 1 s\" do it later".to_owned());
     }
     let height = clause.take_measure_or_plain(Dimension::Length).map(|(h, _)| h);
+    let heights = clause.take_heights();
     clause.take(|s| matches!(s, Sense::Direction(Direction::Down)).then_some(()));
     clause.take_sense(&Sense::Ground);
     clause.take_sense(&Sense::AboveGround);
+    clause.take_sense(&Sense::View(View::Above));
     let scale = clause.take_scale(qualifies(Verb::Fall));
+    let vigour = clause.take_vigour();
     for &object in &objects {
         let before = draft.gap_m(object);
         let usual = match scale {
             Some(scale) if scale.compared && before > 1e-3 => before * scale.ratio,
-            _ => DROP_HEIGHTS * draft.facts(object).height_m() * scale.map_or(1.0, |s| s.ratio),
+            _ => DROP_HEIGHTS * draft.facts(object).height_m() * scale.map_or(1.0, |s| s.ratio) * vigour,
         };
-        let gap = height.unwrap_or(usual).abs();
+        let gap = height.or(heights.map(|n| n * draft.facts(object).height_m())).unwrap_or(usual).abs();
         draft.set_gap_m(object, gap);
         draft.object(object).velocity_m_s[2] = 0.0;
         let floats = if draft.gravity_m_s2() < 1e-6 { "; without gravity it floats there" } else { "" };
@@ -69,9 +72,10 @@ pub fn lift(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let directions = clause.take_directions();
     let above = clause.take_sense(&Sense::AboveGround);
     clause.take_sense(&Sense::Ground);
-    let ratio = clause.take_scale(qualifies(Verb::Lift)).map_or(1.0, |s| s.ratio);
+    let heights = clause.take_heights();
+    let ratio = clause.take_scale(qualifies(Verb::Lift)).map_or(1.0, |s| s.ratio) * clause.take_vigour();
     for &object in &objects {
-        let usual = LIFT_HEIGHTS * draft.facts(object).height_m() * ratio;
+        let usual = heights.unwrap_or(LIFT_HEIGHTS * ratio) * draft.facts(object).height_m();
         let absolute = above || matches!(length, Some((_, Some(Preposition::To | Preposition::At))));
         let amount = length.map_or(usual, |(l, _)| l);
         let down = directions.contains(&Direction::Down);
@@ -97,6 +101,7 @@ pub fn raise(draft: &mut Draft, object: usize, gap_m: f64) -> Result<(), Refusal
 pub fn shift(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let objects = draft.subjects(clause)?;
     let length = clause.take_measure_or_plain(Dimension::Length).map(|(l, _)| l);
+    let vigour = clause.take_vigour();
     let directions = clause.take_directions();
     if clause.take_sense(&Sense::AboveGround)
         && let Some(gap) = length
@@ -111,7 +116,7 @@ pub fn shift(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     }
     for &object in &objects {
         let heading = draft.frame(object).heading(&directions).ok_or("those directions cancel out")?;
-        let distance = length.unwrap_or(MOVE_SIZES * draft.size_m(object));
+        let distance = length.unwrap_or(MOVE_SIZES * draft.size_m(object) * vigour);
         let name = draft.name(object);
         if draft.gap_m(object) + heading.unit.z * distance < -1e-6 {
             return Err(format!("{name} would start inside what it stands on"));
@@ -151,6 +156,7 @@ pub fn turn(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<(), Re
             }
         }
     };
+    let angle = angle * clause.take_vigour();
     let directions = clause.take_directions();
     for &object in &objects {
         let frame = draft.frame(object);
@@ -165,8 +171,35 @@ pub fn turn(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<(), Re
         });
         let usual = if verb == Verb::Tilt { DVec3::Z.cross(frame.forward()) } else { DVec3::Z };
         rotate(draft, object, DMat3::from_axis_angle(axis.try_normalize().unwrap_or(usual), angle));
-        let axis = super::motion::axis_name(axis.try_normalize().unwrap_or(usual) * angle.signum());
-        let line = format!("{} is turned by {}° about {axis}", draft.name(object), say::short(angle.abs().to_degrees()));
+        let degrees = say::short(angle.abs().to_degrees());
+        let line = match frame.heading(&directions).filter(|_| verb == Verb::Tilt && angle > 0.0) {
+            Some(heading) => format!("{} leans {} by {degrees}°", draft.name(object), heading.said),
+            None => {
+                let axis = super::motion::axis_name(axis.try_normalize().unwrap_or(usual) * angle.signum());
+                format!("{} is turned by {degrees}° about {axis}", draft.name(object))
+            }
+        };
+        draft.gloss.push(line);
+    }
+    Ok(())
+}
+
+/// "tip it over to the left": it starts leaning a fifth further than where its middle stands over its edge.
+pub fn topple(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    let objects = draft.subjects(clause)?;
+    let directions = clause.take_directions();
+    for &object in &objects {
+        let frame = draft.frame(object);
+        let wanted = if directions.is_empty() { &[Direction::Forward][..] } else { &directions };
+        let heading = frame.heading(wanted).ok_or("those directions cancel out")?;
+        let axis = DVec3::Z.cross(heading.unit).try_normalize().ok_or("it falls over to a side: \"to the left\", \"forward\"")?;
+        let facts = draft.facts(object);
+        let half = (DVec3::from_array(facts.high_m) - DVec3::from_array(facts.low_m)) / 2.0;
+        let edge_m = half.x * heading.unit.x.abs() + half.y * heading.unit.y.abs();
+        let angle = (1.2 * edge_m.atan2(facts.centre_m[2] - facts.low_m[2])).min(TAU / 4.5);
+        rotate(draft, object, DMat3::from_axis_angle(axis, angle));
+        let assumed = if directions.is_empty() { " (no direction said)" } else { "" };
+        let line = format!("{} starts leaning {}{assumed} by {}°, and falls over", draft.name(object), heading.said, say::short(angle.to_degrees()));
         draft.gloss.push(line);
     }
     Ok(())

@@ -3,9 +3,10 @@
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
 use super::super::lexicon::{Sense, TurnWord};
+use super::super::numbers::Dimension;
 use super::super::say;
 use glam::DVec3;
-use phystalk::spec::{Auto, Object, Spec};
+use phystalk::spec::{Auto, Event, Object, Spec};
 
 const NOTHING: &str = "there is no turn before this one that it could speak of";
 
@@ -136,13 +137,12 @@ fn object(draft: &mut Draft, index: usize, was: &Object, how: Follow, said: &mut
 /// of a place the step is taken the other way or once more.
 fn along(was: DVec3, is: DVec3, how: Follow, rate: bool) -> [f64; 3] {
     let step = is - was;
+    let unit = step.try_normalize().unwrap_or(DVec3::ZERO);
+    let part = is.dot(unit) * unit;
     let after = match (how, rate) {
-        (Follow::Opposite, true) => {
-            let unit = step.try_normalize().unwrap_or(DVec3::ZERO);
-            is - 2.0 * is.dot(unit) * unit
-        }
+        (Follow::Opposite, true) => is - 2.0 * part,
         (Follow::Opposite, false) => was - step,
-        (Follow::On(share), true) => is + step * (1.5f64.powf(share) - 1.0),
+        (Follow::On(share), true) => is + part * (1.5f64.powf(share) - 1.0),
         (Follow::On(share), false) => is + step * share,
     };
     say::tidy3(after)
@@ -160,32 +160,55 @@ fn scalar((was, is): (f64, f64), how: Follow, target: &mut f64, say: impl Fn(f64
     said.push(say(*target));
 }
 
-/// Directions alone, right after a push: "no, to the right". The newest velocity or push gets that way and keeps its strength.
-pub fn aim(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
-    let directions = clause.take_directions();
-    let Some(before) = draft.context.previous_spec.filter(|_| !directions.is_empty()) else { return Ok(false) };
+/// A direction, a time or a speed alone, right after a push: "no, to the right", "at 1 s instead", "at 3 m/s". The newest
+/// push or velocity gets it and keeps the rest. Whether the clause was that.
+pub fn amend(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
+    let Some(before) = draft.context.previous_spec else { return Ok(false) };
+    let speaks = |s: &Sense| match s {
+        Sense::Direction(_) | Sense::At(_) => true,
+        Sense::Measure(quantity, _) => quantity.dimension == Dimension::Speed,
+        _ => false,
+    };
+    if clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(_))) || !clause.has(speaks) {
+        return Ok(false);
+    }
     let now = draft.context.spec;
-    for index in 0..now.objects.len() {
-        let thing = &now.objects[index];
-        let heading = draft.frame(index).heading(&directions).ok_or("those directions cancel out")?;
-        let event = now
-            .events
-            .iter()
-            .position(|e| e.object == thing.name && e.push_m_s.is_some() && before.events.iter().find(|b| b.name == e.name) != Some(e));
-        if let Some(i) = event {
-            let strength = DVec3::from_array(now.events[i].push_m_s.unwrap_or_default()).length();
-            draft.spec.events[i].push_m_s = Some(say::tidy3(heading.unit * strength));
-            draft.gloss.push(format!("{} of {} goes {}: {}", now.events[i].name, thing.name, heading.said, say::speed(strength)));
-            return Ok(true);
+    for (index, thing) in now.objects.iter().enumerate() {
+        let frame = draft.frame(index);
+        let newer = |e: &Event| e.object == thing.name && before.events.iter().find(|b| b.name == e.name) != Some(e);
+        let event = now.events.iter().position(|e| newer(e) && e.push_m_s.is_some());
+        let was = before.objects.iter().find(|o| o.name == thing.name).map_or(DVec3::ZERO, |o| DVec3::from_array(o.velocity_m_s));
+        let velocity = DVec3::from_array(thing.velocity_m_s);
+        let changed = (velocity - was).try_normalize().unwrap_or(DVec3::ZERO);
+        let old = match event {
+            Some(i) => DVec3::from_array(now.events[i].push_m_s.unwrap_or_default()),
+            None => velocity.dot(changed) * changed,
+        };
+        if old == DVec3::ZERO {
+            continue;
         }
-        let was = before.objects.iter().find(|o| o.name == thing.name).map_or([0.0; 3], |o| o.velocity_m_s);
-        let step = DVec3::from_array(thing.velocity_m_s) - DVec3::from_array(was);
-        if step != DVec3::ZERO {
-            let velocity = DVec3::from_array(was) + heading.unit * step.length();
-            draft.object(index).velocity_m_s = say::tidy3(velocity);
-            draft.gloss.push(format!("{} goes {}: {}", thing.name, heading.said, say::speed(step.length())));
-            return Ok(true);
-        }
+        let directions = clause.take_directions();
+        let heading = if directions.is_empty() { None } else { Some(frame.heading(&directions).ok_or("those directions cancel out")?) };
+        let speed = clause.take_measure(Dimension::Speed).map_or(old.length(), |(v, _)| v);
+        let new = heading.as_ref().map_or(old.normalize(), |h| h.unit) * speed;
+        let way = heading.map_or(String::new(), |h| format!(" {}", h.said));
+        let line = match event {
+            Some(i) => {
+                let event = &mut draft.spec.events[i];
+                event.push_m_s = Some(say::tidy3(new));
+                if let Some(at_s) = clause.take_at() {
+                    event.at_s = say::tidy(at_s);
+                }
+                format!("{} of {} goes{way} at {}: {} more", event.name, thing.name, say::seconds(event.at_s), say::speed(speed))
+            }
+            None => {
+                draft.object(index).velocity_m_s = say::tidy3(velocity - old + new);
+                format!("{} goes{way}: {} at the start", thing.name, say::speed(speed))
+            }
+        };
+        clause.take_sense(&Sense::Instead);
+        draft.gloss.push(line);
+        return Ok(true);
     }
     Ok(false)
 }

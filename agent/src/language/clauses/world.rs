@@ -25,6 +25,13 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) {
     {
         set_gravity(draft, strength.abs());
     }
+    let springy = clause.take(|s| match s {
+        Sense::Springy(restitution) => Some(*restitution),
+        _ => None,
+    });
+    if let Some(restitution) = springy {
+        super::adjust::set_restitution(draft, restitution);
+    }
     let surface = clause.take(|s| match s {
         Sense::Surface(friction) => Some(*friction),
         _ => None,

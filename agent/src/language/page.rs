@@ -1,0 +1,281 @@
+//! `docs/phrases.md`, made from the lexicon and from what the phrasebook says to examples.
+
+use super::clause::{HARD, step};
+use super::clauses::{adjust, camera, motion, place};
+use super::directions;
+use super::lexicon::{Form, Part, Property, SECTIONS, Sense, Unbuilt, Verb};
+use super::numbers::UNITS;
+use super::tests::Stage;
+use super::{Reply, say};
+use std::fmt::Write;
+
+/// Examples under headings; turns before the last are separated by `|`.
+const EXAMPLES: &[(&str, &[&str])] = &[
+    (
+        "Motions",
+        &[
+            "Elastic vase jumps and falls.",
+            "jump 30 cm",
+            "make it jump | higher",
+            "jump up and to the left",
+            "drop it from 2 m",
+            "drop it upside down from half a metre",
+            "lift it by 20 cm",
+            "Push the vase forward.",
+            "push it to the left at 0.5 s",
+            "kick it very hard towards me",
+            "push it left at 0.5 s and right at 1 s",
+            "make it jump, then push it left in mid-air",
+            "throw it 2 m forward",
+            "spin it clockwise at 2 turns per second",
+            "tilt it 20 degrees to the left",
+            "tip it over",
+            "a backflip",
+            "pull it left with 3 m/s2 from 0.2 s to 1 s",
+            "strong wind from the front",
+            "hold the base | let go at 1 s",
+            "spin it | stop spinning",
+        ],
+    ),
+    (
+        "Materials",
+        &[
+            "make it of rubber",
+            "turn the vase into jelly",
+            "softer",
+            "a bit stiffer",
+            "three times heavier",
+            "20 % softer",
+            "stiffness 30 kPa",
+            "as soft as foam",
+            "turn it into lava",
+        ],
+    ),
+    (
+        "World and time",
+        &["do it on the moon", "half the gravity", "zero gravity", "on ice", "bouncier", "for 3 seconds", "twice as long", "at 100 fps"],
+    ),
+    ("Camera", &["look from above", "camera from the left at 2 m", "zoom in a bit", "orbit once", "wider", "reset the camera"]),
+    (
+        "The turn before",
+        &[
+            "undo that",
+            "undo twice",
+            "back to the first",
+            "back to v2",
+            "push it left | no, the other way",
+            "push it left at 0.5 s | no, at 1 s",
+            "softer | again",
+            "softer | a bit more",
+            "softer | undo that and make it heavier",
+        ],
+    ),
+    (
+        "Several at once, slips, and what is not understood",
+        &["make the vsae jump and look from behind", "make the wooden vase jump", "push it sternly to the left", "push the flowers"],
+    ),
+];
+
+/// The page.
+pub fn page() -> String {
+    let mut page = String::from(
+        "<!-- Made from the code by `PHYSTALK_WRITE_DOCS=1 cargo test -p phystalk-agent phrases_page`. Do not edit. -->\n\n# Phrases\n\n\
+         What the offline phrasebook understands. It is a grammar: any subject, verb, direction, amount and time below go together, and a request may hold \
+         several clauses (`and`, `then`, `but`, commas). Every word counts: it is used, or it is one of the small words at the end, or it is reported. A word of \
+         four letters or more may have one slip; what it was read as is said.\n",
+    );
+    examples(&mut page);
+    amounts(&mut page);
+    words(&mut page);
+    page
+}
+
+fn examples(page: &mut String) {
+    page.push_str("\n## Examples\n\nSaid of a vase one metre high, automatic stiffness 200 kPa.\n");
+    for (title, rows) in EXAMPLES {
+        let _ = write!(page, "\n### {title}\n\n| words | what it does |\n|---|---|\n");
+        for row in *rows {
+            let turns: Vec<&str> = row.split(" | ").collect();
+            let mut stage = Stage::vase();
+            for turn in &turns[..turns.len() - 1] {
+                stage = stage.then(turn);
+            }
+            let said = answer(&stage.ask(turns[turns.len() - 1]));
+            let _ = writeln!(page, "| {} | {said} |", turns.join("; *then* "));
+        }
+    }
+}
+
+/// A reply in words.
+fn answer(reply: &Reply) -> String {
+    let unknown = |words: &[String]| if words.is_empty() { String::new() } else { format!(" (not understood: {})", words.join(", ")) };
+    match reply {
+        Reply::Edits { gloss, not_understood, .. } => format!("{}{}", gloss.join("; "), unknown(not_understood)),
+        Reply::Undo(1) => "back by one turn".to_owned(),
+        Reply::Undo(n) => format!("back by {n} turns"),
+        Reply::Redo(n) => format!("forward by {n}"),
+        Reply::BackTo(super::VersionRef::First) => "back to the first version".to_owned(),
+        Reply::BackTo(super::VersionRef::Number(n)) => format!("back to v{n}"),
+        Reply::Refused { reason, not_understood } => format!("refused: {reason}{}", unknown(not_understood)),
+    }
+}
+
+fn amounts(page: &mut String) {
+    page.push_str("\n## Amounts that are not given\n\n| of | is |\n|---|---|\n");
+    let rows = [
+        (
+            "a jump",
+            format!(
+                "{} of the object's height; stored as the speed √(2 g h) in the gravity of that turn (9.81 m/s² where there is none)",
+                motion::JUMP_HEIGHTS
+            ),
+        ),
+        ("a push", format!("{} m/s times √(longest side in metres), at the start; with a time it is an event", motion::PUSH_M_S)),
+        ("a throw", format!("{} m/s times √(longest side), 45° up", motion::THROW_M_S)),
+        ("a spin", "1 turn a second, counter-clockwise seen from above".to_owned()),
+        ("a pull, wind", format!("{} m/s², to the end", motion::PULL_M_S2)),
+        ("a drop", format!("{} of the object's height, from its lowest point to what is below it", place::DROP_HEIGHTS)),
+        ("a lift", format!("{} of the object's height", place::LIFT_HEIGHTS)),
+        ("a move", format!("{} of the longest side", place::MOVE_SIZES)),
+        ("a turn, a tilt", format!("{}°, {}°", say::short(place::TURN_RAD.to_degrees()), say::short(place::TILT_RAD.to_degrees()))),
+        (
+            "a direction",
+            "forward: the object's front, +x unless the spec says otherwise; its left is +y. \"Towards me\" and \"on screen left\" go by the camera"
+                .to_owned(),
+        ),
+        ("hard, gently", format!("{HARD} times, 1/{HARD} times; \"very\" twice over")),
+        (
+            "softer, stiffer, heavier, lighter, more slippery",
+            format!("a factor of {}; \"a bit\" its square root, \"much\" its square", step(Property::Stiffness)),
+        ),
+        ("higher, faster, stronger, longer, closer", format!("a factor of {}", step(Property::Height))),
+        ("a material's stiffness before the first run", say::pressure(adjust::YOUNG_BEFORE_RUN_PA)),
+        ("an orbit, a step of the camera", format!("{}° a second, {}°", camera::ORBIT_DEG_S, camera::STEP_DEG)),
+    ];
+    for (of, is) in rows {
+        let _ = writeln!(page, "| {of} | {is} |");
+    }
+    page.push_str("\n## Numbers and units\n\nIn digits or words: `0.5`, `1,5`, `half a`, `two and a half`, `a third of a`, `twenty-five`, `20 %`, `3 times`. Units combine with `/` or *per*:\n");
+    for (names, ..) in UNITS {
+        let _ = writeln!(page, "- {}", names.replace(' ', ", "));
+    }
+}
+
+fn words(page: &mut String) {
+    page.push_str("\n## Words\n");
+    for section in SECTIONS {
+        let _ = write!(page, "\n### {}\n\n| meaning | words |\n|---|---|\n", section.title);
+        for entry in section.entries {
+            let _ = writeln!(page, "| {} | {} |", meaning(&entry.sense), entry.words.replace('|', ", "));
+        }
+    }
+}
+
+fn meaning(sense: &Sense) -> String {
+    match sense {
+        Sense::Verb(Verb::Push(strength)) if *strength > 0.0 => "a hard push".to_owned(),
+        Sense::Verb(Verb::Push(strength)) if *strength < 0.0 => "a gentle push".to_owned(),
+        Sense::Verb(Verb::Push(_)) => "push".to_owned(),
+        Sense::Verb(Verb::Zoom(sign)) => if *sign > 0.0 { "camera closer" } else { "camera further away" }.to_owned(),
+        Sense::Verb(verb) => format!("{verb:?}").to_lowercase(),
+        Sense::Change(sign) => if *sign > 0.0 { "more" } else { "less" }.to_owned(),
+        Sense::Degree(degree) => format!("so much: {} steps", say::short(*degree)),
+        Sense::Strength(sign) => if *sign > 0.0 { "hard" } else { "gently" }.to_owned(),
+        Sense::Factor(factor) => format!("{} times", say::short(*factor)),
+        Sense::Property(property) => property_name(*property).to_owned(),
+        Sense::Quality(property, sign, form) => {
+            let way = if *sign > 0.0 { "more" } else { "less" };
+            let form = if *form == Form::Comparative { "" } else { " (as an adjective or adverb)" };
+            format!("{way} {}{form}", property_name(*property))
+        }
+        Sense::Material(name) => (*name).to_owned(),
+        Sense::Unbuilt(what) => unbuilt_name(*what).to_owned(),
+        Sense::Gravity(strength) => format!("gravity {}", say::acceleration(*strength)),
+        Sense::Surface(friction) => format!("friction {}", say::short(*friction)),
+        Sense::Springy(restitution) => format!("restitution {}", say::short(*restitution)),
+        Sense::Direction(direction) => directions::said(*direction).to_owned(),
+        Sense::View(view) => format!("seen from: {view:?}").to_lowercase(),
+        Sense::Part(part) => part_name(*part).to_owned(),
+        Sense::Pose(pose) => match pose {
+            super::lexicon::Pose::UpsideDown => "upside down",
+            super::lexicon::Pose::OnItsSide => "on its side",
+            super::lexicon::Pose::Upright => "upright",
+        }
+        .to_owned(),
+        Sense::Moment(moment) => format!("at its {moment:?}, predicted").to_lowercase(),
+        Sense::Turn(word) => format!("{word:?}").to_lowercase(),
+        Sense::Version(number) => format!("v{number}"),
+        Sense::Preposition(preposition) => format!("*{preposition:?}*").to_lowercase(),
+        Sense::Ground => "the ground, or what is on it".to_owned(),
+        Sense::It => "what was spoken of".to_owned(),
+        Sense::All => "all objects".to_owned(),
+        Sense::Edge => "over the edge of the collider it stands on".to_owned(),
+        Sense::AboveGround => "over what is below it".to_owned(),
+        Sense::Negation => "stops or takes back a motion; elsewhere it holds the clause back".to_owned(),
+        Sense::Condition => "not built yet: holds the clause back".to_owned(),
+        Sense::Question => "a question is not answered".to_owned(),
+        Sense::Instead => "replaces the push before".to_owned(),
+        Sense::Separator => "between clauses".to_owned(),
+        Sense::Filler => "says nothing".to_owned(),
+        other => format!("{other:?}").to_lowercase(),
+    }
+}
+
+fn property_name(property: Property) -> &'static str {
+    match property {
+        Property::Stiffness => "stiffness",
+        Property::Hardness => "stiffness, or strength after a push",
+        Property::Density => "density",
+        Property::Height => "height of a jump or a drop",
+        Property::Speed => "speed",
+        Property::Strength => "strength",
+        Property::Size => "strength of a motion",
+        Property::Bounce => "restitution of what is below",
+        Property::Friction => "friction of what is below",
+        Property::Duration => "duration",
+        Property::Distance => "distance of the camera, or of a throw",
+        Property::Gravity => "gravity",
+        Property::FrameRate => "frames a second",
+        Property::FieldOfView => "field of view",
+        Property::Poisson => "Poisson's ratio",
+    }
+}
+
+fn part_name(part: Part) -> &'static str {
+    match part {
+        Part::Base => "the lowest twentieth",
+        Part::Top => "the highest twentieth",
+        Part::LowerHalf => "the lower half",
+        Part::UpperHalf => "the upper half",
+        Part::LowerThird => "the lowest third",
+        Part::UpperThird => "the highest third",
+    }
+}
+
+fn unbuilt_name(what: Unbuilt) -> &'static str {
+    match what {
+        Unbuilt::Liquid => "liquids",
+        Unbuilt::Rigid => "rigid bodies",
+        Unbuilt::Plastic => "plastic materials",
+        Unbuilt::Viscoplastic => "viscoplastic materials",
+        Unbuilt::Grains => "sand and snow",
+        Unbuilt::Gas => "gases",
+        Unbuilt::Muscle => "things that move themselves",
+        Unbuilt::Heat => "heat",
+        Unbuilt::Fracture => "breaking",
+        Unbuilt::Look => "colours and light",
+        Unbuilt::Scene => "size and number of things",
+        Unbuilt::Playback => "playback",
+    }
+}
+
+#[test]
+fn phrases_page_is_current() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/phrases.md");
+    if std::env::var_os("PHYSTALK_WRITE_DOCS").is_some() {
+        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+        std::fs::write(&file, page()).unwrap();
+    }
+    let written = std::fs::read_to_string(&file).unwrap_or_default();
+    assert!(written == page(), "docs/phrases.md is not what the code says: PHYSTALK_WRITE_DOCS=1 cargo test -p phystalk-agent phrases_page");
+}
