@@ -14,7 +14,7 @@ pub mod twin;
 #[cfg(test)]
 mod tests;
 
-use crate::gpu::{Access, Constant, Gpu, GpuError, Kernel, KernelSource, Recording};
+use crate::gpu::{Access, Constant, Gpu, GpuError, Kernel, KernelSource, Recording, Tier};
 use crate::skin::Splats;
 use bytemuck::{Pod, Zeroable};
 
@@ -67,13 +67,21 @@ const ROOF_REACH: f32 = 3.0;
 /// Static Gaussians fainter than this are no surface.
 const ROOF_OPACITY: f32 = 0.3;
 
-/// Threads of a workgroup: of most passes, of the bounds, of the pyramid.
+/// Threads of a workgroup: of most passes, and of the bounds.
 const GROUP_SIZE: u32 = 64;
 const BOUNDS_GROUP: u32 = 128;
-const PYRAMID_GROUP: u32 = 256;
 
 /// Workgroups that find the bounds.
 const BOUNDS_GROUPS: u32 = 64;
+
+/// Threads that build one layer's pyramid: as many as a GPU lets meet at a barrier; few on a CPU, where
+/// barriers are dear.
+fn pyramid_group(gpu: &Gpu) -> u32 {
+    match gpu.tier {
+        Tier::Gpu => gpu.device.limits().max_compute_invocations_per_workgroup.clamp(64, 1024),
+        Tier::Cpu => 64,
+    }
+}
 
 /// WGSL of `fn ground_shade(p: vec2<f32>) -> f32`, the factor of the plain ground at a place. The pass
 /// that includes it declares `ground_map` as the buffer of [`Shadow::ground_map`] and the constant `SIDE`.
@@ -126,7 +134,7 @@ impl Shadow {
             Pass::Plane => vec![&bounds, &pyramid, &roof, &ground_map],
         };
         let passes = Pass::ALL.into_iter().map(|pass| {
-            let kernel = gpu.kernel(&pass.source());
+            let kernel = gpu.kernel(&pass.source(pyramid_group(gpu)));
             let bindings = gpu.bind(&kernel, &buffers(pass));
             (pass, kernel, bindings)
         });
@@ -193,7 +201,7 @@ const SHADE: Part = ("render/shadow_shade.wgsl", include_str!("../../shaders/ren
 impl Pass {
     const ALL: [Pass; 6] = [Pass::Bounds, Pass::Splat, Pass::Roof, Pass::Pyramid, Pass::Receive, Pass::Plane];
 
-    fn source(self) -> KernelSource {
+    fn source(self, pyramid_group: u32) -> KernelSource {
         use Access::{Read, Write};
         let (label, parts, bindings) = match self {
             Pass::Bounds => {
@@ -221,7 +229,9 @@ impl Pass {
                 ("shadow.plane", vec![MAP, PLACE, SPLINE, SHADE, main], vec![Read, Read, Read, Write])
             }
         };
-        KernelSource { label, entry: "main", parts, constants: constants(), bindings, immediate_bytes: size_of::<Immediates>() as u32 }
+        let mut constants = constants();
+        constants.push(("PYRAMID_GROUP", Constant::U32(pyramid_group)));
+        KernelSource { label, entry: "main", parts, constants, bindings, immediate_bytes: size_of::<Immediates>() as u32 }
     }
 }
 
@@ -246,13 +256,12 @@ fn constants() -> Vec<(&'static str, Constant)> {
         ("GROUP_SIZE", Constant::U32(GROUP_SIZE)),
         ("BOUNDS_GROUP", Constant::U32(BOUNDS_GROUP)),
         ("BOUNDS_GROUPS", Constant::U32(BOUNDS_GROUPS)),
-        ("PYRAMID_GROUP", Constant::U32(PYRAMID_GROUP)),
     ]
 }
 
 /// Every pass of the contact shadow.
 pub fn kernels() -> Vec<KernelSource> {
-    Pass::ALL.into_iter().map(Pass::source).collect()
+    Pass::ALL.into_iter().map(|pass| pass.source(256)).collect()
 }
 
 /// All WGSL of the contact shadow, for the keys of stages.
