@@ -12,6 +12,7 @@ mod png;
 mod preview;
 mod raster;
 mod sheet;
+mod vp8;
 
 pub use atomic::write_atomic;
 pub use compare::{Comparison, Tolerance, compare};
