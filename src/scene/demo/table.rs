@@ -7,7 +7,7 @@ use glam::Vec3;
 /// Height of the top's upper face above the floor.
 pub const TOP_M: f32 = 0.42;
 /// Length along x, depth along y and thickness of the top.
-pub const TOP_SIZE_M: Vec3 = Vec3::new(0.50, 0.70, 0.032);
+pub const TOP_SIZE_M: Vec3 = Vec3::new(0.46, 0.62, 0.032);
 /// Dabs lie this much below the face that they show, so that what stands on it is told apart.
 const BELOW_M: f32 = 8e-4;
 /// Radius of the rim.
@@ -201,20 +201,37 @@ pub fn floor(seed: u64) -> Vec<Dab> {
         for j in -TILES..TILES {
             let corner = Vec3::new(i as f32 + 0.37, j as f32 + 0.21, 0.0) * TILE_M;
             let shade = [random.about(1.0), random.about(1.0)];
-            let mut x = 0.0;
-            for (a, dx) in STRIPS.into_iter().enumerate() {
-                let mut y = 0.0;
-                for (b, dy) in STRIPS.into_iter().enumerate() {
-                    let centre = corner + Vec3::new(x + dx / 2.0, y + dy / 2.0, 0.0) * TILE_M;
-                    y += dy;
-                    let joint = a == STRIPS.len() - 1 || b == STRIPS.len() - 1;
-                    floor_dab(&mut dabs, centre, [dx * TILE_M, dy * TILE_M], shade, joint);
-                }
-                x += dx;
-            }
+            one_tile(&mut dabs, corner, shade);
         }
     }
     dabs
+}
+
+/// The strips of a tile along x times those along y. Around a leg they are split, so that no dab
+/// in front of it reaches over its foot.
+fn one_tile(dabs: &mut Vec<Dab>, corner: Vec3, shade: [f32; 2]) {
+    let joint = STRIPS.len() - 1;
+    let mut x = 0.0;
+    for (a, dx) in STRIPS.into_iter().enumerate() {
+        let mut y = 0.0;
+        for (b, dy) in STRIPS.into_iter().enumerate() {
+            let size = Vec3::new(dx, dy, 0.0) * TILE_M;
+            let low = corner + Vec3::new(x, y, 0.0) * TILE_M;
+            let parts = if near_a_leg(low + size / 2.0) { 4 } else { 1 };
+            for part in 0..parts * parts {
+                let part_size = size / parts as f32;
+                let centre = low + part_size * Vec3::new((part % parts) as f32 + 0.5, (part / parts) as f32 + 0.5, 0.0);
+                floor_dab(dabs, centre, [part_size.x, part_size.y], shade, a == joint || b == joint);
+            }
+            y += dy;
+        }
+        x += dx;
+    }
+}
+
+fn near_a_leg(p: Vec3) -> bool {
+    let half = TOP_SIZE_M / 2.0 - LEG_INSET_M;
+    (p.x.abs() - half.x).hypot(p.y.abs() - half.y) < 0.075
 }
 
 fn floor_dab(dabs: &mut Vec<Dab>, centre: Vec3, size: [f32; 2], shade: [f32; 2], joint: bool) {

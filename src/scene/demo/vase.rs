@@ -52,7 +52,7 @@ pub fn vase(seed: u64, foot: Vec3) -> Vec<Dab> {
         let start = random.unit();
         let outside = high[1] > low[1] || low[0] < high[0];
         for i in 0..count as usize {
-            let turn = (i as f32 + start + random.about(0.1)) / count * TAU;
+            let turn = (i as f32 + start + random.about(0.06)) / count * TAU;
             let (sin, cos) = turn.sin_cos();
             let around = Vec3::new(-sin, cos, 0.0) * (TAU * radius / count);
             let up = Vec3::new(cos * (high[0] - low[0]), sin * (high[0] - low[0]), high[1] - low[1]);
@@ -73,7 +73,7 @@ fn rows() -> Vec<[f32; 2]> {
     for i in 0..(PROFILE.len() - 1) * fine {
         let (a, b) = (curve(i as f32 / fine as f32), curve((i + 1) as f32 / fine as f32));
         along += (b[0] - a[0]).hypot(b[1] - a[1]);
-        let in_band = (BAND_M[0]..BAND_M[1]).contains(&b[1]) && b[0] > 0.06;
+        let in_band = (BAND_M[0] - 0.004..BAND_M[1] + 0.004).contains(&b[1]) && b[0] > 0.06;
         if along >= CELL_M[usize::from(in_band)] {
             rows.push(b);
             along = 0.0;
@@ -145,7 +145,7 @@ fn painted(turn: f32, height: f32) -> Option<Vec3> {
     let wave = 0.055 * (along * TAU).sin();
     // Painted edges are as soft as the dabs are wide.
     let soft = |inside: f32| smooth(-0.03, 0.03, inside);
-    let stem = soft(0.03 - (across - wave).abs());
+    let stem = soft(0.045 - (across - wave).abs());
     let leaf = |side: f32, shift: f32| {
         let (x, y) = ((along - shift + 0.5).rem_euclid(1.0) - 0.5, (across - wave) * side);
         // An almond that leans forward.
