@@ -29,19 +29,13 @@ impl Body {
         Body { signed: signed.collect(), volume_m3, grid }
     }
 
-    /// Signed distance at the centre of the voxel that holds a point, metres.
-    pub fn nearest_m(&self, point: Vec3) -> f32 {
-        let at = ((point - self.grid.low) / self.grid.voxel_m).max(Vec3::ZERO).as_uvec3().min(self.grid.size - 1);
-        self.signed[self.grid.index(at)] * self.grid.voxel_m
-    }
-
     /// Distance to the surface, metres, negative inside: trilinear between voxel centres. A grid has
     /// room around its solid, so that it is never less than two voxels wide.
     pub fn distance_m(&self, point: Vec3) -> f32 {
         let last = (self.grid.size - 1).as_vec3();
         let at = ((point - self.grid.low) / self.grid.voxel_m - 0.5).clamp(Vec3::ZERO, last);
-        let base = at.floor().min(last - 1.0);
-        let (t, first) = (at - base, self.grid.index(base.as_uvec3()));
+        let base = at.as_uvec3().min(self.grid.size - 2);
+        let (t, first) = (at - base.as_vec3(), self.grid.index(base));
         let (row, slab) = (self.grid.size.x as usize, self.grid.slab());
         let mix = |a: f32, b: f32, t: f32| a + t * (b - a);
         let along_x = |i: usize| mix(self.signed[i], self.signed[i + 1], t.x);

@@ -26,6 +26,8 @@ const LARGEST_OPACITY: f32 = 0.99;
 /// exp(-q/2) is taken as (1 - q/2n)^n with n = 4: equal to second order at the centre and zero
 /// beyond q = 2n, so that each Gaussian touches a bounded set of voxels.
 const REACH_SQUARED: f32 = 8.0;
+/// An opaque Gaussian alone is [`OCCUPIED_DEPTH`] deep up to this many standard deviations.
+const SOLID_REACH: f32 = 1.75;
 /// Neighbours whose mean distance is a Gaussian's spacing.
 const SPACING_NEIGHBOURS: usize = 8;
 /// Gaussians asked for their spacing; the median of so many is within a few per cent.
@@ -87,10 +89,12 @@ pub(super) fn rasterise(gaussians: &Gaussians, ground_m: f32, margin_spacings: f
 fn choose_grid(gaussians: &Gaussians, visible: &[usize], floor_m: f32, spacing_m: f32, margin_spacings: f32) -> Result<Grid, ProxyError> {
     let reach = |i: usize| {
         let s = gaussians.covariance(i);
-        Vec3::new(s.x_axis.x, s.y_axis.y, s.z_axis.z).max(Vec3::ZERO).map(f32::sqrt) * REACH_SQUARED.sqrt()
+        Vec3::new(s.x_axis.x, s.y_axis.y, s.z_axis.z).max(Vec3::ZERO).map(f32::sqrt)
     };
+    let reaches: Vec<Vec3> = visible.iter().map(|&i| reach(i)).collect();
     let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    let (low, high) = visible.iter().fold(start, |(low, high), &i| (low.min(gaussians.mean[i] - reach(i)), high.max(gaussians.mean[i] + reach(i))));
+    let solid = visible.iter().zip(&reaches).map(|(&i, &reach)| (gaussians.mean[i], SOLID_REACH * reach));
+    let (low, high) = solid.fold(start, |(low, high), (mean, reach)| (low.min(mean - reach), high.max(mean + reach)));
     if high.z <= floor_m {
         return Err(ProxyError::BelowGround { ground_m: floor_m, highest_m: high.z });
     }
@@ -100,7 +104,8 @@ fn choose_grid(gaussians: &Gaussians, visible: &[usize], floor_m: f32, spacing_m
         let low = (low - margin).with_z(floor_m);
         (low, ((high + margin - low) / voxel_m).ceil())
     };
-    let visits = |voxel_m: f32| -> f64 { visible.iter().map(|&i| f64::from((reach(i) * 2.0 / voxel_m + 3.0).element_product())).sum() };
+    let support = 2.0 * REACH_SQUARED.sqrt();
+    let visits = |voxel_m: f32| -> f64 { reaches.iter().map(|&reach| f64::from((reach * (support / voxel_m) + 3.0).element_product())).sum() };
     loop {
         let (low, size) = extent(voxel_m);
         let voxels = f64::from(size.x) * f64::from(size.y) * f64::from(size.z);

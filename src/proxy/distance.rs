@@ -15,10 +15,10 @@ pub(super) const LARGEST_CAP: u32 = 180;
 pub(super) fn squared(grid: &Grid, mask: &[bool], cap: u32) -> Vec<i16> {
     let cap = cap.clamp(1, LARGEST_CAP) as i16;
     let far = cap * cap + 1;
-    let mut along_x: Vec<i16> = mask.iter().map(|&set| if set { 0 } else { far }).collect();
-    along_x.par_chunks_mut(grid.size.x as usize).for_each(|row| sweep_row(row, far));
     let (row, slab) = (grid.size.x as usize, grid.slab());
-    let mut along_y = vec![far; along_x.len()];
+    let mut along_x = vec![far; grid.len()];
+    along_x.par_chunks_mut(row).zip(mask.par_chunks(row)).for_each(|(out, mask)| sweep_row(out, mask));
+    let mut along_y = vec![far; grid.len()];
     along_y.par_chunks_mut(slab).zip(along_x.par_chunks(slab)).for_each(|(out, from)| {
         for (y, out) in out.chunks_exact_mut(row).enumerate() {
             lower(out, from, y, row, cap);
@@ -33,17 +33,19 @@ pub(super) fn squared(grid: &Grid, mask: &[bool], cap: u32) -> Vec<i16> {
 }
 
 /// Squared distances within one row, by a sweep each way.
-fn sweep_row(row: &mut [i16], far: i16) {
-    let mut steps = i32::from(far);
-    for cell in row.iter_mut() {
-        steps = if *cell == 0 { 0 } else { (steps + 1).min(LARGEST_CAP as i32) };
-        *cell = (steps * steps).min(i32::from(*cell)) as i16;
+fn sweep_row(out: &mut [i16], mask: &[bool]) {
+    if !mask.contains(&true) {
+        return;
     }
-    steps = i32::from(far);
-    for cell in row.iter_mut().rev() {
-        steps = if *cell == 0 { 0 } else { (steps + 1).min(LARGEST_CAP as i32) };
-        *cell = (steps * steps).min(i32::from(*cell)) as i16;
-    }
+    let sweep = |cells: &mut dyn Iterator<Item = (&mut i16, &bool)>| {
+        let mut steps = LARGEST_CAP as i16;
+        for (out, &set) in cells {
+            steps = if set { 0 } else { (steps + 1).min(LARGEST_CAP as i16) };
+            *out = (*out).min(steps * steps);
+        }
+    };
+    sweep(&mut out.iter_mut().zip(mask));
+    sweep(&mut out.iter_mut().zip(mask).rev());
 }
 
 /// out = min over lines j within `cap` of line `at` of `from[j] + (at - j)^2`, `line` values a line.

@@ -11,14 +11,14 @@ use super::distance;
 use super::grid::Grid;
 use rayon::prelude::*;
 
-/// Radius of the rolling ball in spacings of the Gaussians: holes up to six spacings wide are closed.
-pub(super) const CLOSING_SPACINGS: f32 = 3.0;
+/// Radius of the rolling ball in spacings of the Gaussians: holes up to eight spacings wide are closed.
+pub(super) const CLOSING_SPACINGS: f32 = 4.0;
 /// Enclosed space must hold a ball of this many spacings, or be shut on all sides.
 const ROOMY_SPACINGS: f32 = 1.0;
 /// Directions to neighbouring voxels.
 const ALL_WAYS: u8 = 26;
-/// Blocked directions from which a voxel counts as enclosed: a hole may show in up to four.
-const MOST_WAYS: u8 = 22;
+/// Blocked directions from which a voxel counts as enclosed: one hole may show.
+const MOST_WAYS: u8 = 25;
 
 /// Marks every voxel that belongs to the solid: the occupied ones and what they enclose.
 pub(super) fn solid(grid: &Grid, occupied: &[bool], spacing_m: f32) -> Vec<bool> {
@@ -32,7 +32,10 @@ pub(super) fn solid(grid: &Grid, occupied: &[bool], spacing_m: f32) -> Vec<bool>
     let roomy = farther(grid, &open, room);
     // one voxel more than the ball, so that its rounding leaves no seam along the shell
     let cramped = farther(grid, &roomy, room + 1.0);
-    (0..grid.len()).map(|i| occupied[i] || (closed[i] && ways[i] == ALL_WAYS) || (!open[i] && !cramped[i])).collect()
+    let filled = |i: usize| (closed[i] && ways[i] == ALL_WAYS) || !(open[i] || cramped[i]);
+    let air: Vec<bool> = (0..grid.len()).map(|i| !occupied[i] && !filled(i)).collect();
+    // a ray through a pinhole leaves pits inside, which nothing reaches from the border
+    flood(grid, &air).into_iter().map(|outside| !outside).collect()
 }
 
 /// Where the nearest marked voxel is more than `radius` voxels away.

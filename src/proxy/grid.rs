@@ -36,8 +36,8 @@ impl Grid {
 
     /// The voxel stored at an index.
     pub fn voxel(&self, index: usize) -> UVec3 {
-        let (row, x) = (index / self.size.x as usize, index % self.size.x as usize);
-        UVec3::new(x as u32, (row % self.size.y as usize) as u32, (row / self.size.y as usize) as u32)
+        let (row, x) = (index as u32 / self.size.x, index as u32 % self.size.x);
+        UVec3::new(x, row % self.size.y, row / self.size.y)
     }
 
     /// The voxels, by index, that share a face with one.

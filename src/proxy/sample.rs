@@ -56,20 +56,34 @@ pub(super) fn sample(body: &Body, spacing_m: f32, seed: u64) -> Option<Vec<Sampl
 impl Lattice {
     /// The particles of one horizontal layer of cells.
     fn slab(&self, body: &Body, z: u32, seed: u64) -> Vec<(UVec3, Sample)> {
-        let cells = (0..self.size.y).flat_map(|y| (0..self.size.x).map(move |x| UVec3::new(x, y, z)));
-        cells.filter_map(|cell| self.particle(body, cell, seed).map(|sample| (cell, sample))).collect()
+        let near = body.grid.voxel_m;
+        let voxel = |cell: u32, size: u32| (((cell as f32 + 0.5) * self.spacing_m / near) as u32).min(size - 1) as usize;
+        let xs: Vec<usize> = (0..self.size.x).map(|x| voxel(x, body.grid.size.x)).collect();
+        let (_, corner) = self.probes(body);
+        let farthest = (corner + near) / near;
+        let mut samples = Vec::new();
+        for y in 0..self.size.y {
+            let row = body.grid.index(UVec3::new(0, voxel(y, body.grid.size.y) as u32, voxel(z, body.grid.size.z) as u32));
+            for x in (0..self.size.x).filter(|&x| body.signed[row + xs[x as usize]] <= farthest) {
+                let cell = UVec3::new(x, y, z);
+                samples.extend(self.particle(body, cell, seed).map(|sample| (cell, sample)));
+            }
+        }
+        samples
+    }
+
+    /// Probes along an edge of a cell, and how far from its centre the surface must be for none to be cut.
+    fn probes(&self, body: &Body) -> (f32, f32) {
+        let probes = (self.spacing_m / body.grid.voxel_m).ceil().clamp(2.0, MOST_PROBES);
+        let step = self.spacing_m / probes;
+        (probes, 0.5 * 3.0f32.sqrt() * (self.spacing_m - step) + 0.5 * step)
     }
 
     /// The particle of one cell, where it holds any solid.
     fn particle(&self, body: &Body, cell: UVec3, seed: u64) -> Option<Sample> {
         let centre = self.low + (cell.as_vec3() + 0.5) * self.spacing_m;
-        let probes = (self.spacing_m / body.grid.voxel_m).ceil().clamp(2.0, MOST_PROBES);
+        let (probes, corner) = self.probes(body);
         let step = self.spacing_m / probes;
-        // beyond the outermost probe and half a step no probe is cut
-        let corner = 0.5 * 3.0f32.sqrt() * (self.spacing_m - step) + 0.5 * step;
-        if body.nearest_m(centre) > corner + body.grid.voxel_m {
-            return None;
-        }
         let depth = body.distance_m(centre);
         if depth > corner {
             return None;
