@@ -55,6 +55,15 @@ fn blend(pixel: ptr<function, Pixel>, shape: vec4<f32>, weight: vec4<f32>, colou
     }
 }
 
+// Blends the splats of the batch that a word of a ballot names, in order.
+fn walk(first: u32, vote: u32, a: ptr<function, Pixel>, b: ptr<function, Pixel>) {
+    for (var rest = vote; rest != 0u; rest &= rest - 1u) {
+        let i = first + countTrailingZeros(rest);
+        blend(a, shapes[i], weights[i], colours[i], indices[i]);
+        if (PIXELS_A_THREAD == 2u) { blend(b, shapes[i], weights[i], colours[i], indices[i]); }
+    }
+}
+
 fn put(pixel: Pixel) {
     finish(vec2<u32>(pixel.at), pixel.colour, abs(pixel.transmittance), pixel.depth, pixel.heaviest);
 }
@@ -101,12 +110,11 @@ fn main(
                 hit = largest_exponent(shapes[k], weights[k], low, high) >= frame.alpha_min_log2 - EXPONENT_SLACK;
             }
             let vote = subgroupBallot(hit);
-            for (var word = 0u; word < (lanes + 31u) / 32u; word++) {
-                for (var rest = vote[word]; rest != 0u; rest &= rest - 1u) {
-                    let i = chunk + word * 32u + countTrailingZeros(rest);
-                    blend(&a, shapes[i], weights[i], colours[i], indices[i]);
-                    if (PIXELS_A_THREAD == 2u) { blend(&b, shapes[i], weights[i], colours[i], indices[i]); }
-                }
+            walk(chunk, vote.x, &a, &b);
+            if (WIDE) {
+                walk(chunk + 32u, vote.y, &a, &b);
+                walk(chunk + 64u, vote.z, &a, &b);
+                walk(chunk + 96u, vote.w, &a, &b);
             }
             ended = subgroupAll(a.transmittance < 0.0 && (PIXELS_A_THREAD == 1u || b.transmittance < 0.0));
             if (ended && lane == 0u) { atomicAdd(&ended_subgroups, 1u); }

@@ -20,19 +20,22 @@ pub struct Blocks {
     pub subgroups: u32,
     /// Elements of a block: of a workgroup on a GPU, of one invocation on a CPU.
     pub elements: u32,
+    /// Whether a subgroup may have more than 32 lanes.
+    pub wide: bool,
 }
 
 impl Blocks {
-    /// Eight of the smallest subgroups and 16 elements a thread on a GPU; one invocation with 512
-    /// elements on a CPU, eight of them a group so that they fill its vector lanes.
-    pub fn new(gpu: &Gpu, tier: Tier) -> Blocks {
+    /// What suits a device whose subgroups have `lanes.0` to `lanes.1` lanes: eight of the smallest and
+    /// 16 elements a thread on a GPU; one invocation with 512 elements on a CPU, eight of them a group
+    /// so that they fill its vector lanes.
+    pub fn of(tier: Tier, lanes: (u32, u32)) -> Blocks {
         match tier {
             Tier::Gpu => {
-                let workgroup = (8 * gpu.subgroup_lanes.0.max(4)).min(256);
-                let subgroups = workgroup / gpu.subgroup_lanes.0.max(4);
-                Blocks { workgroup, elements_a_thread: 16, subgroups, elements: workgroup * 16 }
+                let smallest = lanes.0.max(4);
+                let workgroup = (8 * smallest).min(256);
+                Blocks { workgroup, elements_a_thread: 16, subgroups: workgroup / smallest, elements: workgroup * 16, wide: lanes.1 > 32 }
             }
-            Tier::Cpu => Blocks { workgroup: 8, elements_a_thread: 512, subgroups: 1, elements: 512 },
+            Tier::Cpu => Blocks { workgroup: 8, elements_a_thread: 512, subgroups: 1, elements: 512, wide: false },
         }
     }
 

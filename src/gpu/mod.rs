@@ -26,13 +26,10 @@ pub use sort::{RadixSort, SortBuffers, SortPlan};
 
 /// Every pass of the room in every form, for validation.
 pub fn kernels() -> Vec<KernelSource> {
-    let forms = [
-        (Tier::Gpu, Blocks { workgroup: 256, elements_a_thread: 16, subgroups: 8, elements: 4096 }),
-        (Tier::Cpu, Blocks { workgroup: 8, elements_a_thread: 512, subgroups: 1, elements: 512 }),
-    ];
+    let forms = [(Tier::Gpu, (32, 32)), (Tier::Gpu, (8, 128)), (Tier::Cpu, (8, 8))].map(|(tier, lanes)| (tier, Blocks::of(tier, lanes)));
     let of_form = |(tier, blocks): (Tier, Blocks)| {
         let sorts = (1..=8).flat_map(move |width| sort::sources(&blocks, tier, width));
         scan::sources(&blocks, tier).into_iter().chain(sorts).chain([extent::source(&blocks)])
     };
-    forms.into_iter().flat_map(of_form).collect()
+    forms.into_iter().flat_map(of_form).chain([calibrate::source()]).collect()
 }

@@ -28,7 +28,7 @@ impl Scan {
 
     /// A given form, so that tests can run both on one device.
     pub fn with_tier(gpu: &Gpu, tier: Tier) -> Scan {
-        let blocks = Blocks::new(gpu, tier);
+        let blocks = Blocks::of(tier, gpu.subgroup_lanes);
         let [reduce, spine, sweep] = sources(&blocks, tier);
         Scan { tier, blocks, reduce: gpu.kernel(&reduce), spine: gpu.kernel(&spine), sweep: gpu.kernel(&sweep) }
     }

@@ -59,7 +59,7 @@ impl RadixSort {
 
     /// A given form, so that tests can run both on one device.
     pub fn with_tier(gpu: &Gpu, tier: Tier) -> RadixSort {
-        RadixSort { tier, blocks: Blocks::new(gpu, tier), digits: Default::default() }
+        RadixSort { tier, blocks: Blocks::of(tier, gpu.subgroup_lanes), digits: Default::default() }
     }
 
     /// Room for up to `capacity` keys.
@@ -123,7 +123,7 @@ pub(super) fn sources(blocks: &Blocks, tier: Tier, width: u32) -> [KernelSource;
     let (r, w) = (Access::Read, Access::Write);
     let constants = || {
         let mut constants = blocks.constants();
-        constants.extend([("DIGIT_BITS", Constant::U32(width)), ("DIGITS", Constant::U32(1 << width))]);
+        constants.extend([("DIGIT_BITS", Constant::U32(width)), ("DIGITS", Constant::U32(1 << width)), ("WIDE", Constant::Bool(blocks.wide))]);
         constants
     };
     let whole = |label, parts: &[(&'static str, &'static str)], bindings: &[Access], immediate_bytes| KernelSource {
@@ -192,6 +192,14 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn ballots_of_more_than_one_word_agree_too() {
+        let gpu = Gpu::shared_for_tests().unwrap();
+        let wide = Gpu { subgroup_lanes: (gpu.subgroup_lanes.0, 128), ..gpu.clone() };
+        let keys = hashed(3000, 20);
+        assert!(run(&gpu, &RadixSort::with_tier(&wide, Tier::Gpu), &keys, 20) == twin::sort(&keys, 20));
     }
 
     #[test]

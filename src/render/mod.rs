@@ -28,7 +28,7 @@ pub use view::{View, parse_colour};
 /// Raised when the picture of the same Gaussians may change.
 pub const VERSION: u32 = 1;
 
-/// The whole text of the room's shaders, for cache keys.
+/// The whole text of every shader that a picture passes through, for cache keys.
 pub fn shader_text() -> String {
-    kernels().iter().map(crate::gpu::KernelSource::wgsl).collect()
+    kernels().iter().chain(&crate::gpu::kernels()).map(crate::gpu::KernelSource::wgsl).collect()
 }

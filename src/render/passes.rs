@@ -30,6 +30,8 @@ pub(super) struct RasterForm {
     pub depth: bool,
     /// Whether the heaviest Gaussian is kept.
     pub id: bool,
+    /// Whether a subgroup may have more than 32 lanes.
+    pub wide: bool,
 }
 
 impl RasterForm {
@@ -63,6 +65,7 @@ impl RasterForm {
             ("BATCH", Constant::U32(if self.bin == 32 { 256 } else { 128 })),
             ("WITH_DEPTH", Constant::Bool(self.depth)),
             ("WITH_ID", Constant::Bool(self.id)),
+            ("WIDE", Constant::Bool(self.wide)),
             ("INFINITY_BITS", Constant::U32(f32::INFINITY.to_bits())),
         ]);
         let (u, r, w) = (Access::Uniform, Access::Read, Access::Write);
@@ -123,7 +126,7 @@ pub fn kernels() -> Vec<KernelSource> {
     for tier in [Tier::Cpu, Tier::Gpu] {
         for bin in [16, 32] {
             for (depth, id) in [(false, false), (true, true)] {
-                all.push(RasterForm { tier, bin, depth, id }.source());
+                all.push(RasterForm { tier, bin, depth, id, wide: bin == 16 }.source());
             }
         }
     }
@@ -166,7 +169,7 @@ impl Passes {
     }
 
     pub fn raster(&self, gpu: &Gpu, bin: u32, depth: bool, id: bool) -> &Kernel {
-        let form = RasterForm { tier: self.tier, bin, depth, id };
+        let form = RasterForm { tier: self.tier, bin, depth, id, wide: gpu.subgroup_lanes.1 > 32 };
         self.raster[form.slot()].get_or_init(|| gpu.kernel(&form.source()))
     }
 }
