@@ -54,12 +54,63 @@ fn in_window(first: vec3<i32>) -> bool {
     return all(first >= vec3<i32>(1)) && all(first <= last);
 }
 
-// Quadratic B-spline weights of the three nodes, for an offset of 0.5 to 1.5 cells from the first.
-fn spline(offset: vec3<f32>) -> array<vec3<f32>, 3> {
-    let a = vec3<f32>(1.5) - offset;
-    let b = offset - vec3<f32>(1.0);
-    let c = offset - vec3<f32>(0.5);
-    return array<vec3<f32>, 3>(0.5 * a * a, vec3<f32>(0.75) - b * b, 0.5 * c * c);
+// The 3^3 nodes that a particle exchanges with: weights of the quadratic B-spline and offsets in
+// storage along each axis, the particle's place from the first node in cells.
+struct Stencil {
+    wx: vec3<f32>,
+    wy: vec3<f32>,
+    wz: vec3<f32>,
+    ox: vec3<u32>,
+    oy: vec3<u32>,
+    oz: vec3<u32>,
+    place: vec3<f32>,
+}
+
+fn stencil(x: vec3<f32>, base: vec3<i32>, cell: vec3<u32>) -> Stencil {
+    let place = x * params.per_m - vec3<f32>(base);
+    let a = vec3<f32>(1.5) - place;
+    let b = place - vec3<f32>(1.0);
+    let c = place - vec3<f32>(0.5);
+    let w0 = 0.5 * a * a;
+    let w1 = vec3<f32>(0.75) - b * b;
+    let w2 = 0.5 * c * c;
+    let o0 = axis_offsets(cell);
+    let o1 = axis_offsets(cell + vec3<u32>(1u));
+    let o2 = axis_offsets(cell + vec3<u32>(2u));
+    return Stencil(
+        vec3<f32>(w0.x, w1.x, w2.x),
+        vec3<f32>(w0.y, w1.y, w2.y),
+        vec3<f32>(w0.z, w1.z, w2.z),
+        vec3<u32>(o0.x, o1.x, o2.x),
+        vec3<u32>(o0.y, o1.y, o2.y),
+        vec3<u32>(o0.z, o1.z, o2.z),
+        place,
+    );
+}
+
+// One of three by number: an index that varies would send the vector through memory.
+fn pick(v: vec3<f32>, k: u32) -> f32 {
+    return select(select(v.z, v.y, k == 1u), v.x, k == 0u);
+}
+
+fn pick_offset(v: vec3<u32>, k: u32) -> u32 {
+    return select(select(v.z, v.y, k == 1u), v.x, k == 0u);
+}
+
+// A row of three nodes along x: their weights, where they are stored, how far they are in y and z.
+struct Row {
+    weights: vec3<f32>,
+    nodes: vec3<u32>,
+    dy: f32,
+    dz: f32,
+}
+
+fn row(s: Stencil, number: u32) -> Row {
+    let y = number % 3u;
+    let z = number / 3u;
+    let weights = s.wx * (pick(s.wy, y) * pick(s.wz, z));
+    let nodes = s.ox + vec3<u32>(pick_offset(s.oy, y) + pick_offset(s.oz, z));
+    return Row(weights, nodes, f32(y) - s.place.y, f32(z) - s.place.z);
 }
 
 // NaN and infinities by their bits: a comparison with itself is folded away by compilers.

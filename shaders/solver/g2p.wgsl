@@ -19,22 +19,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     var x = position.xyz;
     let base = base_node(x);
     let first = base - params.origin;
-    let offset = x * params.per_m - vec3<f32>(base);
-    var w = spline(offset);
     let cell = vec3<u32>(clamp(first, vec3<i32>(0), vec3<i32>(params.blocks * 4u) - vec3<i32>(3)));
-    var place = array<vec3<u32>, 3>(axis_offsets(cell), axis_offsets(cell + vec3<u32>(1u)), axis_offsets(cell + vec3<u32>(2u)));
-
-    var v = vec3<f32>(0.0);
-    var gradient = mat3x3<f32>();
-    for (var k = 0u; k < 27u; k++) {
-        let at = vec3<u32>(k % 3u, (k / 3u) % 3u, k / 9u);
-        let weight = w[at.x].x * w[at.y].y * w[at.z].z;
-        let node = velocity[place[at.x].x + place[at.y].y + place[at.z].z].xyz * weight;
-        let d = vec3<f32>(at) - offset;
-        v += node;
-        gradient += mat3x3<f32>(node * d.x, node * d.y, node * d.z);
-    }
-    gradient *= 4.0 * params.per_m;
+    let gathered = gather(stencil(x, base, cell));
+    var v = gathered.v;
+    let gradient = gathered.gradient * (4.0 * params.per_m);
     let tag = matter[3u * n + i];
     let object = bitcast<u32>(tag.y);
     x += substep.dt_s * v;

@@ -58,6 +58,57 @@ fn nearest(first: u32, end: u32, i: u32, x: vec3<f32>) -> Near {
     return near;
 }
 
+// What a lane knows while it adds up its stencil.
+struct Lane {
+    pull: vec3<f32>,
+    spread: mat3x3<f32>,
+    mass_units: f32,
+    // Lanes back to the start of its run, and the most of any lane.
+    behind: u32,
+    longest: u32,
+    adds: bool,
+    seed: u32,
+    ground: Near,
+    solid: Near,
+}
+
+fn behind_by(sum: vec4<f32>, step: u32, behind: u32) -> vec4<f32> {
+    let before = subgroupShuffleUp(sum, step);
+    return sum + select(vec4<f32>(0.0), before, behind >= step);
+}
+
+// Adds what the particle gives to one node, `d` cells away; the widest sum that it rounded.
+fn deposit(l: Lane, node: u32, weight: f32, d: vec3<f32>, number: u32) -> f32 {
+    var sum = vec4<f32>(l.pull + l.spread * d, l.mass_units) * weight;
+    if (l.longest >= 1u) { sum = behind_by(sum, 1u, l.behind); }
+    if (l.longest >= 2u) { sum = behind_by(sum, 2u, l.behind); }
+    if (l.longest >= 4u) { sum = behind_by(sum, 4u, l.behind); }
+    if (l.longest >= 8u) { sum = behind_by(sum, 8u, l.behind); }
+    if (l.longest >= 16u) { sum = behind_by(sum, 16u, l.behind); }
+    if (l.longest >= 32u) { sum = behind_by(sum, 32u, l.behind); }
+    if (l.longest >= 64u) { sum = behind_by(sum, 64u, l.behind); }
+    var widest = 0.0;
+    if (l.adds) {
+        let noise = hash(l.seed + number * 0x9e3779b9u);
+        let dither = (vec4<f32>((vec4<u32>(noise) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u)) + vec4<f32>(0.5)) * (1.0 / 256.0);
+        let whole = vec4<i32>(floor(sum + dither));
+        atomicAdd(&sums[4u * node], whole.x);
+        atomicAdd(&sums[4u * node + 1u], whole.y);
+        atomicAdd(&sums[4u * node + 2u], whole.z);
+        atomicAdd(&sums[4u * node + 3u], whole.w);
+        widest = max(max(abs(sum.x), abs(sum.y)), max(abs(sum.z), sum.w));
+    }
+    // Only the nodes beside and below the particle carry its contact: those above it are the body's
+    // own, and the layer that they would stiffen is half a cell thinner without them.
+    if (l.ground.mark != 0u && dot(l.ground.normal, d) <= 0.5) {
+        atomicMax(&marks[2u * node], l.ground.mark);
+    }
+    if (l.solid.mark != 0u && dot(l.solid.normal, d) <= 0.5) {
+        atomicMax(&marks[2u * node + 1u], l.solid.mark);
+    }
+    return widest;
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn main(
     @builtin(global_invocation_id) id: vec3<u32>,
@@ -66,11 +117,8 @@ fn main(
 ) {
     let alive = id.x < params.count;
     let i = min(id.x, params.count - 1u);
-    let n = params.count;
     let position = kinematics[i];
     let x = position.xyz;
-    let v = kinematics[n + i].xyz;
-    let affine = read_affine(i);
     let base = base_node(x);
     let first = base - params.origin;
     let inside = in_window(first);
@@ -78,62 +126,35 @@ fn main(
         atomicStore(&control.window, 1u);
     }
     let counts = alive && inside;
-
-    let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
-    let mass = select(0.0, position.w, counts);
-    let pull = mass * v * select(0.0, momentum_unit, counts);
-    let spread = affine * select(0.0, momentum_unit * params.cell_m, counts);
-    let mass_units = mass * params.mass_units;
-    let offset = x * params.per_m - vec3<f32>(base);
-    var w = spline(offset);
-
-    let cell = vec3<u32>(max(first, vec3<i32>(0)));
-    var place = array<vec3<u32>, 3>(axis_offsets(cell), axis_offsets(cell + vec3<u32>(1u)), axis_offsets(cell + vec3<u32>(2u)));
-    let key = select(0xffffffffu, place[0].x + place[0].y + place[0].z, counts);
+    let s = stencil(x, base, vec3<u32>(max(first, vec3<i32>(0))));
+    let key = select(0xffffffffu, s.ox.x + s.oy.x + s.oz.x, counts);
     let starts = subgroupBallot(lane == 0u || subgroupShuffleUp(key, 1u) != key);
-    let behind = lane - run_start(starts, lane);
-    let longest = subgroupMax(behind);
     let last = lane + 1u == lanes || ((starts[(lane + 1u) >> 5u] >> ((lane + 1u) & 31u)) & 1u) != 0u;
-    let adds = last && counts;
 
-    var ground = Near(0u, vec3<f32>(0.0));
-    var solid = Near(0u, vec3<f32>(0.0));
+    var l: Lane;
+    let unit = select(0.0, momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u]))), counts);
+    l.pull = position.w * kinematics[params.count + i].xyz * unit;
+    l.spread = read_affine(i) * (unit * params.cell_m);
+    l.mass_units = select(0.0, position.w * params.mass_units, counts);
+    l.behind = lane - run_start(starts, lane);
+    l.longest = subgroupMax(l.behind);
+    l.adds = last && counts;
+    l.seed = hash(i ^ hash(substep.index ^ params.seed));
+    l.ground = Near(0u, vec3<f32>(0.0));
+    l.solid = Near(0u, vec3<f32>(0.0));
     if (counts) {
-        ground = nearest(0u, params.has_ground, i, x);
-        solid = nearest(params.has_ground, params.collider_count, i, x);
+        l.ground = nearest(0u, params.has_ground, i, x);
+        l.solid = nearest(params.has_ground, params.collider_count, i, x);
     }
-    var noise = hash(i ^ hash(substep.index ^ params.seed));
     var widest = 0.0;
-    for (var k = 0u; k < 27u; k++) {
-        let at = vec3<u32>(k % 3u, (k / 3u) % 3u, k / 9u);
-        let weight = w[at.x].x * w[at.y].y * w[at.z].z;
-        let d = vec3<f32>(at) - offset;
-        var sum = vec4<f32>(pull + spread * d, mass_units) * weight;
-        for (var step = 1u; step <= longest; step <<= 1u) {
-            let before = subgroupShuffleUp(sum, step);
-            sum += select(vec4<f32>(0.0), before, behind >= step);
-        }
-        let node = place[at.x].x + place[at.y].y + place[at.z].z;
-        if (adds) {
-            noise = hash(noise);
-            let other = hash(noise ^ 0x9e3779b9u);
-            let dither = vec4<f32>(vec4<u32>(noise & 0xffffu, noise >> 16u, other & 0xffffu, other >> 16u)) * (1.0 / 65536.0);
-            let whole = vec4<i32>(floor(sum + dither));
-            widest = max(widest, max(max(abs(sum.x), abs(sum.y)), max(abs(sum.z), sum.w)));
-            atomicAdd(&sums[4u * node], whole.x);
-            atomicAdd(&sums[4u * node + 1u], whole.y);
-            atomicAdd(&sums[4u * node + 2u], whole.z);
-            atomicAdd(&sums[4u * node + 3u], whole.w);
-        }
-        // Only the nodes beside and below the particle carry its contact: those above it are the
-        // body's own, and the layer that they would stiffen is half a cell thinner without them.
-        if (ground.mark != 0u && dot(ground.normal, d) <= 0.5) {
-            atomicMax(&marks[2u * node], ground.mark);
-        }
-        if (solid.mark != 0u && dot(solid.normal, d) <= 0.5) {
-            atomicMax(&marks[2u * node + 1u], solid.mark);
-        }
+    for (var k = 0u; k < 9u; k++) {
+        let r = row(s, k);
+        let d = vec3<f32>(-s.place.x, r.dy, r.dz);
+        widest = max(widest, deposit(l, r.nodes.x, r.weights.x, d, 3u * k));
+        widest = max(widest, deposit(l, r.nodes.y, r.weights.y, d + vec3<f32>(1.0, 0.0, 0.0), 3u * k + 1u));
+        widest = max(widest, deposit(l, r.nodes.z, r.weights.z, d + vec3<f32>(2.0, 0.0, 0.0), 3u * k + 2u));
     }
+    // A number that is none is not under the limit either.
     if (!(widest < SUM_LIMIT)) {
         atomicStore(&control.overflow, 1u);
     }

@@ -48,18 +48,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let position = kinematics[i];
     let x = position.xyz;
     let base = base_node(x);
-    let offset = x * params.per_m - vec3<f32>(base);
-    var w = spline(offset);
-    let cell = vec3<u32>(base - params.origin);
-    var place = array<vec3<u32>, 3>(axis_offsets(cell), axis_offsets(cell + vec3<u32>(1u)), axis_offsets(cell + vec3<u32>(2u)));
-    var gradient = mat3x3<f32>();
-    for (var k = 0u; k < 27u; k++) {
-        let at = vec3<u32>(k % 3u, (k / 3u) % 3u, k / 9u);
-        let u = velocity[place[at.x].x + place[at.y].y + place[at.z].z].xyz * (w[at.x].x * w[at.y].y * w[at.z].z);
-        let d = vec3<f32>(at) - offset;
-        gradient += mat3x3<f32>(u * d.x, u * d.y, u * d.z);
-    }
-    gradient *= 4.0 * params.per_m;
+    let gradient = gather(stencil(x, base, vec3<u32>(base - params.origin))).gradient * (4.0 * params.per_m);
     // Objects that take no part have no pseudo mass.
     let takes_part = position.w > 0.0;
     let mu = matter[i].w;

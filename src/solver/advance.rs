@@ -23,15 +23,15 @@ pub(super) struct Substep {
 
 /// How a segment is cut into substeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Plan {
+pub(super) struct Plan {
     /// Length of all but perhaps the last.
-    dt_s: f32,
+    pub dt_s: f32,
     /// Length of the last: a cut inside a frame leaves a part.
-    last_dt_s: f32,
+    pub last_dt_s: f32,
     /// How many.
-    substeps: u32,
+    pub substeps: u32,
     /// A sort before each so many.
-    sort_every: u32,
+    pub sort_every: u32,
 }
 
 impl Plan {
@@ -158,7 +158,7 @@ impl Solver {
 
     /// Substeps from physics: dt <= C dx / (c + |v|), equal parts of the whole frame, of which a cut
     /// takes the first ones and a remainder.
-    fn plan(&self, seen: &Watch, until_s: f64, frame_end_s: f64, acceleration_m_s2: f32, halvings: u32) -> Plan {
+    pub(super) fn plan(&self, seen: &Watch, until_s: f64, frame_end_s: f64, acceleration_m_s2: f32, halvings: u32) -> Plan {
         let cell_m = f64::from(self.settings.cell_m);
         let left_s = frame_end_s - self.time_s;
         let speed_m_s = f64::from(seen.speed_m_s) + f64::from(acceleration_m_s2) * left_s;
@@ -207,12 +207,8 @@ impl Solver {
     /// Runs the substeps of a plan from the present state. The queue is kept full: a batch is recorded
     /// while the one before it runs.
     fn run(&mut self, plan: &Plan, stop: &Stop) -> Result<Outcome, SolverError> {
-        let Some(grid) = self.grid.clone() else {
-            return Err(SolverError::Input { what: "no grid".to_owned(), expected: "a window".to_owned() });
-        };
-        self.gpu.upload(&self.params_buffer, &[self.params]);
-        self.gpu.upload(&self.control, &[Control::FRESH]);
-        let bound = [self.bind(&grid, 0), self.bind(&grid, 1)];
+        let bound = self.bind_both()?;
+        self.start_segment();
         let batch = match self.gpu.tier {
             Tier::Cpu => (CPU_BATCH / self.params.count).max(1),
             Tier::Gpu => GPU_BATCH,
@@ -223,7 +219,7 @@ impl Solver {
             let end = (step + batch).min(plan.substeps);
             let mut recording = Recording::default();
             for step in step..end {
-                self.record_substep(plan, step, &grid, &bound, &mut recording);
+                self.record_substep(plan, step, &bound, &mut recording);
             }
             if end == plan.substeps {
                 self.record_measure(&mut recording);
@@ -241,12 +237,18 @@ impl Solver {
         Ok(Outcome::Done(self.read_watch()?))
     }
 
-    fn record_substep(&mut self, plan: &Plan, step: u32, grid: &GridBuffers, bound: &[Bound; 2], recording: &mut Recording) {
+    /// Uploads what the passes of a segment start from.
+    pub(super) fn start_segment(&self) {
+        self.gpu.upload(&self.params_buffer, &[self.params]);
+        self.gpu.upload(&self.control, &[Control::FRESH]);
+    }
+
+    pub(super) fn record_substep(&mut self, plan: &Plan, step: u32, bound: &[Bound; 2], recording: &mut Recording) {
         let groups = self.particle_groups();
         let sorts = step.is_multiple_of(plan.sort_every);
         let substep = Substep { dt_s: plan.dt_of(step), dt_next_s: plan.dt_of(step + 1), index: self.substep, job: 0 };
         if sorts {
-            self.record_sort(grid, &bound[self.current], recording);
+            self.record_sort(&bound[self.current], recording);
             self.current = 1 - self.current;
         }
         let b = &bound[self.current];
@@ -256,22 +258,30 @@ impl Solver {
             recording.dispatch_with(&passes.stress, &b.stress, &first, groups);
         }
         recording.dispatch_with(&passes.p2g, &b.p2g, &substep, groups);
-        recording.indirect_with(&passes.grid, &b.grid, &substep, &grid.active_groups, 0);
+        recording.indirect_with(&passes.grid, &b.grid, &substep, &b.active_groups, 0);
         recording.dispatch_with(&passes.g2p, &b.g2p, &substep, groups);
         self.substep += 1;
     }
 
     /// Puts the particles in the order of their cells and lists the blocks that they may reach.
-    pub(super) fn record_sort(&self, grid: &GridBuffers, b: &Bound, recording: &mut Recording) {
+    pub(super) fn record_sort(&self, b: &Bound, recording: &mut Recording) {
         let groups = self.particle_groups();
         let blocks = self.params.blocks.iter().product::<u32>();
         let chunks = [blocks.div_ceil(super::constants::SCAN_LANES * super::constants::SCAN_RUN), 1, 1];
         recording.dispatch(&self.passes.bin, &b.bin, groups);
         recording.dispatch(&self.passes.scan_sums, &b.scan_sums, chunks);
         recording.dispatch(&self.passes.scan_blocks, &b.scan_blocks, chunks);
-        recording.indirect(&self.passes.scan_cells, &b.scan_cells, &grid.active_groups, 0);
+        recording.indirect(&self.passes.scan_cells, &b.scan_cells, &b.active_groups, 0);
         recording.dispatch(&self.passes.scatter, &b.scatter, groups);
         recording.dispatch(&self.passes.order, &b.order, groups);
+    }
+
+    /// Everything bound, for either of the two state buffers.
+    pub(super) fn bind_both(&self) -> Result<[Bound; 2], SolverError> {
+        let Some(grid) = &self.grid else {
+            return Err(SolverError::Input { what: "no grid".to_owned(), expected: "a window".to_owned() });
+        };
+        Ok([self.bind(grid, 0), self.bind(grid, 1)])
     }
 
     /// Everything bound, for particles that lie in one of the two state buffers.
@@ -280,6 +290,7 @@ impl Solver {
         let (state, other) = (&self.buffers[current], &self.buffers[1 - current]);
         let (kinematics, matter) = (&state.kinematics, &state.matter);
         Bound {
+            active_groups: grid.active_groups.clone(),
             bin: gpu.bind(&p.bin, &[params, kinematics, &grid.cell_count, &grid.block_info, &self.control]),
             scan_sums: gpu.bind(&p.scan_sums, &[params, &grid.block_info, &grid.chunk_sums]),
             scan_blocks: gpu
@@ -339,6 +350,7 @@ impl Solver {
 
 /// The bind groups of the passes over one of the two state buffers.
 pub(super) struct Bound {
+    active_groups: wgpu::Buffer,
     bin: wgpu::BindGroup,
     scan_sums: wgpu::BindGroup,
     scan_blocks: wgpu::BindGroup,

@@ -6,6 +6,7 @@
 //! surroundings; nothing is read back inside one, each is watched, and rolled back if it fails.
 
 mod advance;
+mod bench;
 mod checkpoint;
 mod constants;
 mod core;
@@ -20,6 +21,7 @@ mod watch;
 #[cfg(test)]
 mod tests;
 
+pub use bench::{BenchReport, bench_substep};
 pub use core::Solver;
 pub use passes::{kernels, shader_text};
 pub use types::{Advance, Collider, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError};

@@ -14,7 +14,6 @@ use super::grid::GridBuffers;
 use super::obstacles::{self, distance_m};
 use super::state::ParticleState;
 use super::types::{PrestressReport, SolverError};
-use super::watch::Control;
 use crate::Stop;
 use crate::gpu::{Recording, Tier};
 use bytemuck::{Pod, Zeroable};
@@ -205,10 +204,9 @@ impl Solver {
         let Some(grid) = self.grid.clone() else {
             return Err(SolverError::Input { what: "no grid".to_owned(), expected: "a window".to_owned() });
         };
-        self.gpu.upload(&self.params_buffer, &[self.params]);
-        self.gpu.upload(&self.control, &[Control::FRESH]);
+        self.start_segment();
         let mut recording = Recording::default();
-        self.record_sort(&grid, &self.bind(&grid, self.current), &mut recording);
+        self.record_sort(&self.bind(&grid, self.current), &mut recording);
         self.gpu.submit(&recording);
         self.current = 1 - self.current;
         let active = self.gpu.read::<u32>(&grid.active_blocks, 1)?[0] as usize;
