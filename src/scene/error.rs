@@ -16,7 +16,7 @@ pub enum SceneError {
         advice: &'static str,
     },
     /// The file could not be written; what stood there before is untouched.
-    #[error("cannot write {file}: {source}; choose a folder that exists, is writable and has room")]
+    #[error("cannot write {file}: {source}; choose a folder that is writable and has room")]
     Write {
         /// The path as given.
         file: String,

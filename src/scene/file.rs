@@ -2,8 +2,9 @@
 
 use super::error::{CONVERT, COPY_AGAIN};
 use super::{Gaussians, SceneError, UpGuess, ply, splat, up};
+use crate::store::write_atomic;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::{fs, io};
 
 /// The formats that are read and written.
@@ -175,18 +176,6 @@ pub fn write(path: &Path, g: &Gaussians) -> Result<Vec<String>, SceneError> {
         Some("splat") => splat::encode(g),
         _ => return Err(SceneError::Extension { file: path.display().to_string() }),
     };
-    write_whole(path, &bytes).map_err(|source| SceneError::Write { file: path.display().to_string(), source })?;
+    write_atomic(path, &bytes).map_err(|source| SceneError::Write { file: path.display().to_string(), source })?;
     Ok(lost)
-}
-
-/// Writes beside the target, then renames over it.
-fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut beside = path.file_name().ok_or(io::ErrorKind::InvalidInput)?.to_owned();
-    beside.push(format!(".{}.part", std::process::id()));
-    let beside: PathBuf = path.with_file_name(beside);
-    let written = fs::write(&beside, bytes).and_then(|()| fs::rename(&beside, path));
-    if written.is_err() {
-        let _ = fs::remove_file(&beside);
-    }
-    written
 }

@@ -222,8 +222,8 @@ fn folders_missing_files_and_unwritable_places_are_told_apart() {
     assert!(message(&folder.path().join("no.ply")).contains("check the path"));
     let g = random_gaussians(2, 0, 1);
     assert!(matches!(write(&folder.path().join("a.txt"), &g), Err(SceneError::Extension { .. })));
-    assert!(matches!(write(&folder.path().join("no/a.ply"), &g), Err(SceneError::Write { .. })));
     write(&folder.path().join("a.ply"), &g).unwrap();
+    assert!(matches!(write(&folder.path().join("a.ply/b.ply"), &g), Err(SceneError::Write { .. })));
     assert_eq!(read(&folder.path().join("a.ply")).unwrap().gaussians.mean, g.mean);
     let names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     assert_eq!(names, ["a.ply"], "nothing is left beside the file");
