@@ -1,9 +1,9 @@
 //! Phrases to clauses: one clause asks for one thing. Whoever understands a phrase takes it; what nobody took is
 //! reported.
 
-use super::lexicon::{Direction, Form, Preposition, Property, Sense, Verb};
 use super::numbers::{Dimension, Quantity};
 use super::phrases::Phrase;
+use super::sense::{Direction, Form, Preposition, Property, Sense, Verb};
 use std::ops::Range;
 
 /// One clause of a request.
@@ -62,18 +62,18 @@ impl Clause {
         let silent = |sense: &Sense| {
             matches!(
                 sense,
-                Sense::Objects(_)
-                    | Sense::It
-                    | Sense::All
-                    | Sense::Article
-                    | Sense::As
-                    | Sense::Preposition(_)
-                    | Sense::Filler
-                    | Sense::Separator
-                    | Sense::Ground
+                Sense::Objects(_) | Sense::It | Sense::All | Sense::Article | Sense::As | Sense::Preposition(_) | Sense::Filler | Sense::Separator
             )
         };
-        self.left().filter(|p| !silent(&p.sense)).map(|p| p.span.clone()).collect()
+        // "On the table" only says where it stands; any other word about the ground asks for something.
+        let stands = |i: usize| {
+            self.phrases[i].sense == Sense::Ground && {
+                let before = self.phrases[..i].iter().rev().find(|p| p.sense != Sense::Article);
+                before.is_some_and(|p| p.sense == Sense::Preposition(Preposition::On))
+            }
+        };
+        let left = (0..self.phrases.len()).filter(|&i| !self.taken[i] && !silent(&self.phrases[i].sense) && !stands(i));
+        left.map(|i| self.phrases[i].span.clone()).collect()
     }
 
     /// Takes back everything but what no reader could have understood: the clause is refused for a reason of its own.

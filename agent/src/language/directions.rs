@@ -1,6 +1,6 @@
 //! Directions as said to directions of the world: by the object's front, by the camera, or by an axis.
 
-use super::lexicon::{Direction, View};
+use super::sense::{Direction, View};
 use glam::DVec3;
 use phystalk::spec::{Axis, Camera};
 

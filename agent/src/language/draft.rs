@@ -4,8 +4,8 @@
 use super::Context;
 use super::clause::Clause;
 use super::directions::Frame;
-use super::lexicon::Sense;
 use super::say;
+use super::sense::Sense;
 use glam::{DMat3, DVec3, EulerRot};
 use phystalk::spec::{Auto, Camera, Elastic, Event, Material, Object, Spec};
 use phystalk::world::ObjectFacts;

@@ -1,357 +1,8 @@
 //! The words that the phrasebook knows, and what each means. `docs/phrases.md` is made from these tables.
 
+use super::sense::*;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
-
-/// What an object can be asked to do.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Verb {
-    /// Leaves the ground by itself.
-    Jump,
-    /// A jump with one turn in the air.
-    Somersault,
-    /// Comes down: by itself after a jump, else from a height.
-    Fall,
-    /// Falls from a height.
-    Drop,
-    /// Leans so far that it falls over.
-    Topple,
-    /// Starts higher.
-    Lift,
-    /// Gets a speed along the ground; the strength says how hard the word itself is.
-    Push(f64),
-    /// Is accelerated for a while.
-    Pull,
-    /// Gets a speed along the ground and upwards.
-    Throw,
-    /// Turns about an axis at a speed.
-    Spin,
-    /// Spins about a horizontal axis.
-    Roll,
-    /// Is turned by an angle before it starts.
-    Turn,
-    /// Leans by an angle before it starts.
-    Tilt,
-    /// Starts elsewhere.
-    Move,
-    /// Is held.
-    Pin,
-    /// Is let go.
-    Release,
-    /// Is blown at.
-    Blow,
-    /// Stops.
-    Stop,
-    /// Does nothing.
-    Rest,
-    /// Runs for a time.
-    Run,
-    /// The camera looks from somewhere.
-    Look,
-    /// The camera comes closer (1) or goes away (-1).
-    Zoom(f64),
-    /// The camera goes round.
-    Orbit,
-    /// Back to what it was.
-    Reset,
-}
-
-/// What can be more or less.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Property {
-    /// Young's modulus.
-    Stiffness,
-    /// "Harder": stiffer, or a stronger push where that was spoken of.
-    Hardness,
-    /// Mass density.
-    Density,
-    /// How high it jumps or from where it drops.
-    Height,
-    /// How fast it moves.
-    Speed,
-    /// How strong a push is.
-    Strength,
-    /// "Bigger": of a motion, how strong it is.
-    Size,
-    /// Restitution of the ground and colliders.
-    Bounce,
-    /// Friction of the ground and colliders.
-    Friction,
-    /// Length of the run.
-    Duration,
-    /// How far: of a throw or of the camera.
-    Distance,
-    /// Free fall.
-    Gravity,
-    /// Frames a second.
-    FrameRate,
-    /// The camera's angle.
-    FieldOfView,
-    /// Poisson's ratio.
-    Poisson,
-}
-
-/// How an adjective stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// "soft"
-    Plain,
-    /// "softer"
-    Comparative,
-}
-
-/// A direction as said; what it is in the world depends on the object's front or on the camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// The object's front.
-    Forward,
-    /// Its back.
-    Backward,
-    /// Its left.
-    Left,
-    /// Its right.
-    Right,
-    /// Against gravity's usual way: +z.
-    Up,
-    /// -z.
-    Down,
-    /// Along the ground to the camera.
-    Towards,
-    /// Along the ground away from the camera.
-    Away,
-    /// Left in the picture.
-    ScreenLeft,
-    /// Right in the picture.
-    ScreenRight,
-    /// A world axis: 0 x, 1 y, 2 z, and its sign.
-    Axis(u8, bool),
-    /// Counter-clockwise seen from above.
-    Anticlockwise,
-    /// Clockwise seen from above.
-    Clockwise,
-}
-
-/// From where something is seen, or comes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum View {
-    /// From the object's front.
-    Front,
-    /// From behind it.
-    Back,
-    /// From its left.
-    Left,
-    /// From its right.
-    Right,
-    /// From above.
-    Above,
-    /// From just over the ground.
-    Below,
-    /// The camera that the program chooses.
-    Auto,
-}
-
-/// Part of an object's height.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// The lowest twentieth.
-    Base,
-    /// The highest twentieth.
-    Top,
-    /// The lower half.
-    LowerHalf,
-    /// The upper half.
-    UpperHalf,
-    /// The lowest third.
-    LowerThird,
-    /// The highest third.
-    UpperThird,
-}
-
-/// How it starts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pose {
-    /// Turned by half a turn about its front.
-    UpsideDown,
-    /// Turned by a quarter.
-    OnItsSide,
-    /// As captured.
-    Upright,
-}
-
-/// A moment that follows from the motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Moment {
-    /// At the top of a jump.
-    Apex,
-    /// When it comes down.
-    Landing,
-}
-
-/// What concerns turns of the conversation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TurnWord {
-    /// A version back.
-    Undo,
-    /// A version forward.
-    Redo,
-    /// A version by its name.
-    BackTo,
-    /// The first version.
-    First,
-    /// The direction of the last edits, reversed.
-    OtherWay,
-    /// The last edits once more.
-    Again,
-}
-
-/// A material that later issues build, and why it is not there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unbuilt {
-    /// Water and the like.
-    Liquid,
-    /// Steel and the like.
-    Rigid,
-    /// Clay and the like.
-    Plastic,
-    /// Mud and the like.
-    Viscoplastic,
-    /// Sand and the like.
-    Grains,
-    /// Smoke and the like.
-    Gas,
-    /// Muscle.
-    Muscle,
-    /// Melting, freezing, burning.
-    Heat,
-    /// Breaking.
-    Fracture,
-    /// Colour and light.
-    Look,
-    /// Bigger, smaller, copies.
-    Scene,
-    /// Playback speed.
-    Playback,
-}
-
-/// What a word or a group of words means.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Sense {
-    /// Objects by their indices.
-    Objects(Vec<usize>),
-    /// The object spoken of.
-    It,
-    /// Every object.
-    All,
-    /// The camera.
-    Camera,
-    /// The ground and the colliders.
-    Ground,
-    /// A verb.
-    Verb(Verb),
-    /// More (1) or less (-1) of a property.
-    Change(f64),
-    /// How much: an exponent of the step of a comparative, a multiplier of the strength of an adverb.
-    Degree(f64),
-    /// An adverb of strength: -1 gently, 1 hard.
-    Strength(f64),
-    /// So many times.
-    Factor(f64),
-    /// A property by its noun.
-    Property(Property),
-    /// An adjective: the property that it speaks of, which way, and its form.
-    Quality(Property, f64, Form),
-    /// A preset of the spec.
-    Material(&'static str),
-    /// Something that later versions build.
-    Unbuilt(Unbuilt),
-    /// Free fall, m/s2.
-    Gravity(f64),
-    /// Restitution of a surface.
-    Springy(f64),
-    /// Friction of a surface.
-    Surface(f64),
-    /// A direction.
-    Direction(Direction),
-    /// From where it is seen.
-    View(View),
-    /// Part of an object.
-    Part(Part),
-    /// A pose.
-    Pose(Pose),
-    /// A moment.
-    Moment(Moment),
-    /// A word about turns.
-    Turn(TurnWord),
-    /// The name of a version.
-    Version(u32),
-    /// The edge of what it stands on.
-    Edge,
-    /// "above the ground" after a length.
-    AboveGround,
-    /// "on", "at", "from" and so on.
-    Preposition(Preposition),
-    /// "the", "a".
-    Article,
-    /// "as" in a comparison.
-    As,
-    /// "not": holds the clause back unless something takes it.
-    Negation,
-    /// "if", "when": holds the clause back.
-    Condition,
-    /// "why", "how".
-    Question,
-    /// "instead": replaces what was asked before.
-    Instead,
-    /// Between clauses.
-    Separator,
-    /// Adds nothing.
-    Filler,
-    /// A number with its unit, and the preposition before it.
-    Measure(super::numbers::Quantity, Option<Preposition>),
-    /// At a time, seconds.
-    At(f64),
-    /// From one time to another, seconds.
-    Span(f64, f64),
-    /// Until a time, seconds.
-    Until(f64),
-    /// For so long, seconds.
-    For(f64),
-    /// Not in the lexicon.
-    Unknown,
-}
-
-/// A small word before a number or a place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Preposition {
-    /// at
-    At,
-    /// by
-    By,
-    /// from
-    From,
-    /// to
-    To,
-    /// for
-    For,
-    /// with
-    With,
-    /// after
-    After,
-    /// in
-    In,
-    /// on
-    On,
-    /// of
-    Of,
-    /// until
-    Until,
-    /// about an axis, or roughly
-    Around,
-    /// along an axis
-    Along,
-    /// into
-    Into,
-}
 
 /// Words that share a meaning.
 pub struct Entry {
@@ -383,7 +34,7 @@ pub const SECTIONS: &[Section] = &[
         entries: entries! {
             Sense::Verb(Verb::Jump) => "jump|jumps|jumping|jumped|jump up and down|jumps up and down|hop up and down|hop|hops|hopping|leap|leaps|leaping",
             Sense::Verb(Verb::Somersault) => "somersault|somersaults|backflip|frontflip|back flip|front flip",
-            Sense::Verb(Verb::Fall) => "fall|falls|falling|fell|fall back|falls back|falling back|fall back down|back down|down again|back to the ground|back on the ground|back to the table|back onto the table|back on the table|back to the floor|falls back down|fall down|falls down|come back down|comes back down|come down|comes down|go down again|land|lands|landing|lands again|land again|bounce|bounces|bouncing",
+            Sense::Verb(Verb::Fall) => "fall|falls|falling|fell|fall back|falls back|falling back|fall back down|back down|down again|back to the ground|back on the ground|back to the table|back onto the table|back on the table|back to the floor|falls back down|fall down|falls down|come back down|comes back down|come down|comes down|go down again|come to rest|comes to rest|settle|settles|land|lands|landing|lands again|land again|bounce|bounces|bouncing",
             Sense::Verb(Verb::Drop) => "drop|drops|dropped|dropping|drop down",
             Sense::Verb(Verb::Topple) => "topple|topples|topple over|tip over|tips over|tip it over|fall over|falls over|knock it over|knock over|keel over",
             Sense::Verb(Verb::Lift) => "lift|lifts|lifted|lift up|raise|raises|raised|raise up|hoist|pick up|elevate",
@@ -534,7 +185,7 @@ pub const SECTIONS: &[Section] = &[
         title: "Not built yet: refused by name",
         entries: entries! {
             Sense::Unbuilt(Unbuilt::Liquid) => "water|lava|honey|oil|milk|blood|syrup|liquid|magma|paint|mercury liquid|molten|fluid|wine",
-            Sense::Unbuilt(Unbuilt::Rigid) => "rigid|steel|iron|metal|wood|wooden|stone|rock|glass|plastic|concrete|marble|porcelain|ceramic|gold|diamond|ice block|brick|solid",
+            Sense::Unbuilt(Unbuilt::Rigid) => "rigid|steel|iron|metal|wood|wooden|stone|glass|plastic|concrete|marble|porcelain|ceramic|gold|diamond|ice block|brick|solid",
             Sense::Unbuilt(Unbuilt::Plastic) => "clay|dough|plasticine|wax|putty|butter|chocolate",
             Sense::Unbuilt(Unbuilt::Viscoplastic) => "mud|jam|toothpaste|slime|cream|ketchup|mayonnaise",
             Sense::Unbuilt(Unbuilt::Grains) => "sand|snow|soil|dry soil|dust|gravel|salt|sugar|powder|ash",
@@ -542,6 +193,7 @@ pub const SECTIONS: &[Section] = &[
             Sense::Unbuilt(Unbuilt::Muscle) => "muscle|muscles|walk|walks|dance|dances|run away|breathe|breathes|swim|fly|flies",
             Sense::Unbuilt(Unbuilt::Heat) => "melt|melts|melting|melted|freeze|freezes|freezing|frozen|burn|burns|burning|boil|boils|evaporate|heat|heat up|fire|on fire|ice cream",
             Sense::Unbuilt(Unbuilt::Fracture) => "shatter|shatters|shattered|shattering|break|breaks|broken|smash|smashes|explode|explodes|explosion|crack|cracks|tear|tears|crumble|crumbles|split apart|fall apart|falls apart|collapse|collapses|dissolve|dissolves",
+            Sense::Unbuilt(Unbuilt::Deform) => "squeeze|squeezes|squash|squashes|crush|crushes|flatten|stretch|stretches|twist|twists|bend|bends|shake|shakes|wobble|wobbles|wiggle|swing|swings|vibrate|vibrates|rock|rocks",
             Sense::Unbuilt(Unbuilt::Look) => "red|green|blue|yellow|white|black|pink|purple|grey|gray|transparent|invisible|glow|glows|glowing|shiny|colour|color|brighter|darker|fade|fades|disappear|vanish",
             Sense::Unbuilt(Unbuilt::Scene) => "scale|shrink|shrinks|grow|grows|duplicate|copy|clone|inflate|inflates",
             Sense::Unbuilt(Unbuilt::Playback) => "slow motion|slowmo|slow mo|time lapse|timelapse|in reverse|play backwards|rewind",
@@ -598,7 +250,7 @@ pub const SECTIONS: &[Section] = &[
     Section {
         title: "Turns",
         entries: entries! {
-            Turn(TurnWord::Undo) => "undo|undo that|undo it|undo this|undo the last|take that back|take it back|revert|revert that|go back|go back one|step backwards|back one|one step back|previous version|go back to the previous version|back to the previous|back to the previous version|back to before|forget that|never mind|nevermind|scrap that|undo last",
+            Turn(TurnWord::Undo) => "undo|undo that|undo it|undo this|undo the last|take that back|take it back|revert|revert that|go back|go back one|step backwards|back one|one step back|previous version|go back to the previous version|back to the previous|back to the previous version|back to before|forget that|never mind|nevermind|scrap that|undo last|undo the last turn|undo last turn|undo the turn|undo the last one|undo the last step|undo the last change|undo my last change",
             Turn(TurnWord::Redo) => "redo|redo that|redo it|undo the undo|put that back|go forward again|redo the last",
             Turn(TurnWord::BackTo) => "back to version|go back to version|return to version|revert to version|back to|go back to|return to|revert to|restore|go to version|switch to version|version|as it was in",
             Turn(TurnWord::First) => "back to the first|go back to the first|back to the first version|go back to the first version|back to the start|go back to the start|back to the beginning|back to the original|go back to the original|return to the first|start over|start again|start from scratch|from the beginning|back to square one|reset|reset everything|reset all|the first version|back to the first one",
@@ -636,7 +288,7 @@ pub const SECTIONS: &[Section] = &[
             Sense::Question => "why|how|what|where|who|which|whose",
             Sense::Instead => "instead|rather than that|not that way",
             Sense::Separator => "and|then|,|;|but|also|and then|plus|after that|afterwards|next|finally|as well as|at the same time|meanwhile|followed by",
-            Filler => "please|pls|kindly|thanks|thank you|thx|hey|hi|hello|ok|okay|well|so|now|right now|just|simply|maybe|perhaps|can|could|would|should|will|shall|must|you|i|we|us|me|id|lets|let|want|wants|like|need|needs|to see|see|make|makes|making|made|so that|have|has|having|get|gets|getting|give|gives|cause|do|does|doing|become|becomes|be|is|are|being|were|go|goes|going|try|point|points|pointing|change|changes|set|adjust|same|the same|the same thing|too|as well|even|still|only|than|than before|than that|than now|than this|than it was|as before|this time|for me|actually|hmm|oh|yes|yeah|yep|sure|what if|what about|how about|alright|approximately|roughly|exactly|about it|start|starts|starting|begin|begins|value|in the direction|own|something|made of|made out of|material|somehow|step|steps|nope|nah|elastically|by itself|on its own|under",
+            Filler => "please|pls|first|firstly|to begin with|use|t|kindly|thanks|thank you|thx|hey|hi|hello|ok|okay|well|so|now|right now|just|simply|maybe|perhaps|can|could|would|should|will|shall|must|you|i|we|us|me|id|lets|let|want|wants|like|need|needs|to see|see|make|makes|making|made|so that|have|has|having|get|gets|getting|give|gives|cause|do|does|doing|become|becomes|be|is|are|being|were|go|goes|going|try|point|points|pointing|change|changes|set|adjust|same|the same|the same thing|too|as well|even|still|only|than|than before|than that|than now|than this|than it was|as before|this time|for me|actually|hmm|oh|yes|yeah|yep|sure|what if|what about|how about|alright|approximately|roughly|exactly|about it|start|starts|starting|begin|begins|value|in the direction|own|something|made of|made out of|material|somehow|step|steps|nope|nah|elastically|by itself|on its own",
         },
     },
 ];

@@ -16,16 +16,17 @@ mod numbers;
 mod page;
 mod phrases;
 mod say;
+mod sense;
 mod session;
 #[cfg(test)]
 mod tests;
 mod tokens;
 
 use draft::Draft;
-use lexicon::Sense;
 use phrases::{Names, Reading};
-use phystalk::spec::{Edit, Spec};
+use phystalk::spec::{Auto, Edit, Spec};
 use phystalk::world::Facts;
+use sense::Sense;
 
 /// What a request came to.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,10 +142,18 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
     }
     gloss.append(&mut draft.gloss);
     gloss.append(&mut draft.refusals);
+    gloss.extend(too_late(context, &draft.spec));
     if edits.is_empty() && gloss.is_empty() {
         gloss.push("that is so already".to_owned());
     }
     Reply::Edits { edits, gloss, not_understood }
+}
+
+/// Events that this request sets after the end of a run whose length is given: they would never happen.
+fn too_late(context: &Context, after: &Spec) -> Vec<String> {
+    let Auto::Value(end_s) = after.time.duration_s else { return Vec::new() };
+    let new = after.events.iter().filter(|e| e.at_s >= end_s && !context.spec.events.contains(e));
+    new.map(|e| format!("{} at {} comes after the end, {}: \"longer\"", e.name, say::seconds(e.at_s), say::seconds(end_s))).collect()
 }
 
 /// Why nothing was done.

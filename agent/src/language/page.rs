@@ -3,8 +3,9 @@
 use super::clause::{HARD, step};
 use super::clauses::{adjust, camera, motion, place};
 use super::directions;
-use super::lexicon::{Form, Part, Property, SECTIONS, Sense, Unbuilt, Verb};
+use super::lexicon::SECTIONS;
 use super::numbers::UNITS;
+use super::sense::{Form, Part, Property, Sense, Unbuilt, Verb};
 use super::tests::Stage;
 use super::{Reply, say};
 use std::fmt::Write;
@@ -197,9 +198,9 @@ fn meaning(sense: &Sense) -> String {
         Sense::View(view) => format!("seen from: {view:?}").to_lowercase(),
         Sense::Part(part) => part_name(*part).to_owned(),
         Sense::Pose(pose) => match pose {
-            super::lexicon::Pose::UpsideDown => "upside down",
-            super::lexicon::Pose::OnItsSide => "on its side",
-            super::lexicon::Pose::Upright => "upright",
+            super::sense::Pose::UpsideDown => "upside down",
+            super::sense::Pose::OnItsSide => "on its side",
+            super::sense::Pose::Upright => "upright",
         }
         .to_owned(),
         Sense::Moment(moment) => format!("at its {moment:?}, predicted").to_lowercase(),
@@ -263,6 +264,7 @@ fn unbuilt_name(what: Unbuilt) -> &'static str {
         Unbuilt::Muscle => "things that move themselves",
         Unbuilt::Heat => "heat",
         Unbuilt::Fracture => "breaking",
+        Unbuilt::Deform => "squeezing and shaking",
         Unbuilt::Look => "colours and light",
         Unbuilt::Scene => "size and number of things",
         Unbuilt::Playback => "playback",

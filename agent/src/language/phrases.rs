@@ -2,8 +2,9 @@
 //! are put together from their prepositions and numbers. Nothing is dropped here: a word without a meaning is a
 //! phrase too.
 
-use super::lexicon::{Form, PATTERNS, Preposition, Property, SECTIONS, Sense};
+use super::lexicon::{PATTERNS, SECTIONS};
 use super::numbers::{self, Dimension, Quantity};
+use super::sense::{Form, Preposition, Property, Sense};
 use super::tokens::Token;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -83,6 +84,7 @@ pub fn read(mut tokens: Vec<Token>, names: &Names) -> Reading {
     }
     lead_measures(&mut phrases);
     scale_gravity(&mut phrases);
+    hear_complaints(&mut phrases, &tokens);
     tell_times(&mut phrases);
     Reading { tokens, phrases, corrections }
 }
@@ -182,6 +184,22 @@ fn scale_gravity(phrases: &mut [Phrase]) {
         let noun = phrases[i + 1..].iter().find(|p| !matches!(p.sense, Sense::Article | Sense::Preposition(Preposition::Of)));
         if noun.is_some_and(|p| p.sense == Sense::Property(Property::Gravity)) {
             phrases[i].sense = Sense::Factor(value);
+        }
+    }
+}
+
+/// "Too soft" asks for less of it, "not stiff enough" for more.
+fn hear_complaints(phrases: &mut [Phrase], tokens: &[Token]) {
+    let word = |phrase: &Phrase| tokens[phrase.span.end - 1].word.as_str();
+    for i in 1..phrases.len() {
+        if !matches!(phrases[i].sense, Sense::Quality(_, _, Form::Plain)) {
+            continue;
+        }
+        if phrases[i - 1].sense == Sense::Filler && word(&phrases[i - 1]) == "too" {
+            phrases[i - 1].sense = Sense::Change(-1.0);
+        } else if phrases[i - 1].sense == Sense::Negation && phrases.get(i + 1).is_some_and(|p| word(p) == "enough") {
+            phrases[i - 1].sense = Sense::Change(1.0);
+            phrases[i + 1].sense = Sense::Filler;
         }
     }
 }

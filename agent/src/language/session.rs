@@ -1,8 +1,8 @@
 //! What concerns the conversation, not the scene: undo, redo, versions, questions, "no,".
 
-use super::lexicon::{Sense, TurnWord};
 use super::numbers::{Dimension, Quantity};
 use super::phrases::{Phrase, Reading};
+use super::sense::{Sense, TurnWord};
 use super::{Reply, VersionRef};
 use std::f64::consts::TAU;
 
@@ -49,7 +49,6 @@ pub fn understand(reading: &mut Reading) -> Result<Turn, String> {
             _ => None,
         })
         .collect();
-    let Some(word) = words.first().copied() else { return Ok(Turn::None) };
     let rest = |p: &&Phrase| {
         !matches!(p.sense, Sense::Turn(_) | Sense::Separator | Sense::Filler | Sense::It | Sense::Article | Sense::Preposition(_) | Sense::All)
     };
@@ -59,6 +58,10 @@ pub fn understand(reading: &mut Reading) -> Result<Turn, String> {
         Sense::Version(version) => Some(version),
         _ => None,
     });
+    let Some(word) = words.first().copied() else {
+        // "v2", "go to v2"
+        return Ok(version.filter(|_| others == 0).map_or(Turn::None, |v| Turn::Reply(Reply::BackTo(VersionRef::Number(v)))));
+    };
     if others > 0 {
         if word == TurnWord::Undo && words.len() == 1 && counts.is_empty() && version.is_none() {
             reading.phrases.retain(|p| p.sense != Sense::Turn(TurnWord::Undo));

@@ -2,9 +2,9 @@
 
 use super::super::clause::{Clause, Scale};
 use super::super::draft::{Draft, Refusal};
-use super::super::lexicon::{Preposition, Property, Sense, Verb};
 use super::super::numbers::Dimension;
 use super::super::say;
+use super::super::sense::{Preposition, Property, Sense, Verb};
 use glam::DVec3;
 use phystalk::spec::{Auto, presets};
 
@@ -99,10 +99,12 @@ fn property(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result<(), 
         }
         Property::Size => Err("size is not built yet: things move as they were captured; \"a bigger jump\" is understood".to_owned()),
         Property::Bounce => {
+            clause.take_sense(&Sense::Ground);
             bounce(scale, draft);
             Ok(())
         }
         Property::Friction => {
+            clause.take_sense(&Sense::Ground);
             let before = draft.spec.world.ground.friction;
             let after = if before == 0.0 && scale.ratio > 1.0 { 0.1 } else { before * scale.ratio };
             set_friction(draft, after, scale.ratio);
@@ -149,10 +151,12 @@ fn named(property: Property, clause: &mut Clause, draft: &mut Draft) -> Result<(
         }
         Property::Friction => {
             let value = plain().ok_or("how much friction? \"friction 0.5\", \"more slippery\", \"on ice\"")?;
+            clause.take_sense(&Sense::Ground);
             super::world::set_all_friction(draft, value);
         }
         Property::Bounce => {
             let value = plain().ok_or("how bouncy? \"bounciness 0.5\", \"bouncier\"")?.clamp(0.0, 1.0);
+            clause.take_sense(&Sense::Ground);
             set_restitution(draft, value);
         }
         Property::Poisson => {

@@ -2,9 +2,9 @@
 
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
-use super::super::lexicon::{Direction, Preposition, Property, Sense, Verb, View};
 use super::super::numbers::Dimension;
 use super::super::say;
+use super::super::sense::{Direction, Preposition, Property, Sense, Verb, View};
 use glam::{DQuat, DVec3};
 use phystalk::spec::{Auto, Camera};
 
@@ -185,7 +185,10 @@ fn field_of_view(clause: &mut Clause, camera: &mut Camera, said: &mut Vec<String
 
 /// "orbit", "orbit clockwise at 30 deg/s", "go around it by 90 degrees".
 fn orbit(clause: &mut Clause, duration_s: f64, camera: &mut Camera, around: &mut Around, said: &mut Vec<String>) {
-    if clause.take_verb(|v| matches!(v, Verb::Orbit)).is_none() {
+    // "rotate the camera around the vase"
+    let around_it =
+        clause.has(|s| *s == Sense::Preposition(Preposition::Around)) && clause.take_verb(|v| matches!(v, Verb::Turn | Verb::Move)).is_some();
+    if clause.take_verb(|v| matches!(v, Verb::Orbit)).is_none() && !around_it {
         return;
     }
     let sign = match clause.take_directions().first() {

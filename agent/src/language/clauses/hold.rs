@@ -2,9 +2,9 @@
 
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
-use super::super::lexicon::{Part, Pose, Sense, Verb};
 use super::super::numbers::Dimension;
 use super::super::say;
+use super::super::sense::{Part, Pose, Sense, Verb};
 use phystalk::spec::{Event, Pin, Region, Until};
 
 /// "hold the base", "pin the top from 0.2 s to 1 s".

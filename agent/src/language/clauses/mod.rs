@@ -10,7 +10,7 @@ pub mod world;
 
 use super::clause::Clause;
 use super::draft::{Draft, Refusal};
-use super::lexicon::{Sense, Unbuilt, Verb};
+use super::sense::{Sense, Unbuilt, Verb};
 use super::tokens::Token;
 
 /// Understands one clause. What it changed stands in the draft; what it did not take is left in the clause.
@@ -55,6 +55,7 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft, tokens: &[Token]) -> R
     if clause.has(|s| matches!(s, Sense::View(_))) {
         camera::understand(clause, draft)?;
     }
+    clause.take_sense(&Sense::Instead);
     let directed = clause.has(|s| matches!(s, Sense::Direction(_))) && !clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(_)));
     if !turns::amend(clause, draft)? && directed {
         return Err("which motion goes that way? \"push it to the left\"".to_owned());
@@ -146,6 +147,7 @@ pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
         Unbuilt::Muscle => format!("{words}: things that move themselves are not built yet; jumps, pushes, throws and spins are"),
         Unbuilt::Heat => format!("{words}: heat is not built yet; {elastic}"),
         Unbuilt::Fracture => format!("{words}: breaking is not built yet; {elastic}"),
+        Unbuilt::Deform => format!("{words}: only pushes, pulls, spins and pins move things yet; \"softer\" and \"push it\" make it wobble"),
         Unbuilt::Look => format!("{words}: colours and light are not built yet; motion, material, world and camera are"),
         Unbuilt::Scene => format!("{words}: changing the size or number of things is not built yet"),
         Unbuilt::Playback => format!("{words}: playback is not part of a simulation; \"at 200 fps\" gives more frames a second"),

@@ -7,9 +7,9 @@
 use super::super::clause::{Clause, HARD, Scale, qualifies};
 use super::super::directions::from_side;
 use super::super::draft::{Draft, Refusal};
-use super::super::lexicon::{Direction, Moment, Property, Sense, Verb};
 use super::super::numbers::Dimension;
 use super::super::say;
+use super::super::sense::{Direction, Moment, Property, Sense, Verb};
 use glam::DVec3;
 use phystalk::spec::{ColliderShape, Force, Until};
 use std::f64::consts::TAU;

@@ -2,9 +2,9 @@
 
 use super::super::clause::{Clause, qualifies};
 use super::super::draft::{Draft, Refusal, rotate_deg, rotation};
-use super::super::lexicon::{Direction, Pose, Preposition, Property, Sense, Verb, View};
 use super::super::numbers::Dimension;
 use super::super::say;
+use super::super::sense::{Direction, Pose, Preposition, Property, Sense, Verb, View};
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 

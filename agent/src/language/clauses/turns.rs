@@ -2,9 +2,9 @@
 
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
-use super::super::lexicon::{Sense, TurnWord};
 use super::super::numbers::Dimension;
 use super::super::say;
+use super::super::sense::{Sense, TurnWord};
 use glam::DVec3;
 use phystalk::spec::{Auto, Event, Object, Spec};
 

@@ -2,9 +2,9 @@
 
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
-use super::super::lexicon::{Direction, Sense, Verb};
 use super::super::numbers::Dimension;
 use super::super::say;
+use super::super::sense::{Direction, Sense, Verb};
 use glam::DVec3;
 use phystalk::spec::{Auto, presets};
 
@@ -36,6 +36,9 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) {
         Sense::Surface(friction) => Some(*friction),
         _ => None,
     });
+    if surface.is_some() || springy.is_some() {
+        clause.take_sense(&Sense::Ground);
+    }
     if let Some(friction) = surface {
         set_all_friction(draft, friction);
     }
@@ -59,7 +62,7 @@ pub fn set_gravity(draft: &mut Draft, strength_m_s2: f64) {
 
 /// "reverse the gravity", "gravity to the left": where it points. Whether the clause asked for that.
 pub fn turn_gravity(clause: &mut Clause, draft: &mut Draft) -> bool {
-    let gravity = Sense::Property(super::super::lexicon::Property::Gravity);
+    let gravity = Sense::Property(super::super::sense::Property::Gravity);
     if !clause.has(|s| *s == gravity) || !clause.has(|s| matches!(s, Sense::Direction(_))) || draft.spec.objects.is_empty() {
         return false;
     }
