@@ -45,7 +45,7 @@ const COARSEST: f32 = 16.0;
 pub(super) struct Density {
     /// Its voxels; the lowest layer stands on the ground or on the object's lowest centre.
     pub grid: Grid,
-    /// Whether each voxel stops light.
+    /// Whether each voxel stops light; never on a side or on top of the grid.
     pub occupied: Vec<bool>,
     /// Median over the Gaussians of the mean distance to their eight nearest, metres.
     pub spacing_m: f32,
@@ -151,8 +151,12 @@ fn occupy(grid: &Grid, elements: &[Element]) -> Vec<bool> {
                     element.add_row(y, z, &mut depth[start..start + row]);
                 }
             }
-            for (occupied, depth) in occupied.iter_mut().zip(depth.iter()) {
-                *occupied = *depth >= OCCUPIED_DEPTH;
+            // the outermost voxels stay air, so that everything inside has neighbours
+            let (columns, rows) = (1..row - 1, 1..grid.size.y as usize - 1);
+            for y in rows.filter(|_| z + 1 < grid.size.z as usize) {
+                for x in columns.clone() {
+                    occupied[y * row + x] = depth[y * row + x] >= OCCUPIED_DEPTH;
+                }
             }
         },
     );

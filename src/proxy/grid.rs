@@ -40,18 +40,16 @@ impl Grid {
         UVec3::new(x, row % self.size.y, row / self.size.y)
     }
 
-    /// The voxels, by index, that share a face with one.
-    pub fn faces(&self, index: u32) -> impl Iterator<Item = u32> {
-        let (v, row, slab) = (self.voxel(index as usize), self.size.x, self.slab() as u32);
-        let ways = [
-            (v.x > 0, index.wrapping_sub(1)),
-            (v.x + 1 < self.size.x, index + 1),
-            (v.y > 0, index.wrapping_sub(row)),
-            (v.y + 1 < self.size.y, index + row),
-            (v.z > 0, index.wrapping_sub(slab)),
-            (v.z + 1 < self.size.z, index + slab),
-        ];
-        ways.into_iter().filter_map(|(within, near)| within.then_some(near))
+    /// The voxels, by index, that share a face with one that is on no side and not on top: below,
+    /// above, and the four in its layer. Below the lowest layer the index is out of range.
+    pub fn faces(&self, index: u32) -> [u32; 6] {
+        let (row, slab) = (self.size.x, self.slab() as u32);
+        [index.wrapping_sub(slab), index + slab, index - row, index - 1, index + 1, index + row]
+    }
+
+    /// Whether a voxel is on a side or on top of the grid.
+    pub fn on_border(&self, voxel: UVec3) -> bool {
+        voxel.x == 0 || voxel.y == 0 || (voxel + 1).cmpeq(self.size).any()
     }
 
     /// The middle of a voxel, metres.

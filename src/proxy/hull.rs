@@ -35,8 +35,8 @@ pub(super) fn solid(grid: &Grid, gaussians: &Gaussians) -> Result<Vec<bool>, Pro
     let mut solid = vec![false; grid.len()];
     solid.par_chunks_mut(row).enumerate().for_each(|(index, cells)| {
         let (from, to) = interval(&planes, grid.centre(grid.voxel(index * row)), grid.voxel_m);
-        let last = row as f32;
-        cells[from.clamp(0.0, last) as usize..to.clamp(from.clamp(0.0, last), last) as usize].fill(true);
+        let from = from.clamp(0.0, row as f32);
+        cells[from as usize..to.clamp(from, row as f32) as usize].fill(true);
     });
     Ok(solid)
 }

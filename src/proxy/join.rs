@@ -7,6 +7,7 @@
 
 use super::grid::Grid;
 use glam::UVec3;
+use std::ops::Range;
 
 /// Widest gap that is bridged, in spacings of the Gaussians.
 const BRIDGED_SPACINGS: f32 = 6.0;
@@ -34,6 +35,8 @@ struct Pieces {
     voxels: Vec<u32>,
     /// Where each piece begins in `voxels`, and the end.
     starts: Vec<usize>,
+    /// Whether each of `voxels` has a free face.
+    rim: Vec<bool>,
 }
 
 /// Joins loose pieces to the body or drops them.
@@ -63,7 +66,7 @@ pub(super) fn join(grid: &Grid, solid: &mut [bool], spacing_m: f32) -> Joined {
 
 impl Pieces {
     fn find(grid: &Grid, solid: &[bool]) -> Pieces {
-        let mut pieces = Pieces { of: vec![NONE; grid.len()], voxels: Vec::new(), starts: vec![0] };
+        let mut pieces = Pieces { of: vec![NONE; grid.len()], voxels: Vec::new(), starts: vec![0], rim: Vec::new() };
         for seed in 0..grid.len() {
             if !solid[seed] || pieces.of[seed] != NONE {
                 continue;
@@ -71,15 +74,18 @@ impl Pieces {
             let piece = pieces.count() as u32;
             pieces.of[seed] = piece;
             pieces.voxels.push(seed as u32);
-            let mut next = pieces.starts[piece as usize];
-            while let Some(&voxel) = pieces.voxels.get(next) {
+            while let Some(&voxel) = pieces.voxels.get(pieces.rim.len()) {
+                let mut free = false;
                 for near in grid.faces(voxel) {
-                    if solid[near as usize] && pieces.of[near as usize] == NONE {
-                        pieces.of[near as usize] = piece;
+                    let Some(of) = pieces.of.get_mut(near as usize) else { continue };
+                    if !solid[near as usize] {
+                        free = true;
+                    } else if *of == NONE {
+                        *of = piece;
                         pieces.voxels.push(near);
                     }
                 }
-                next += 1;
+                pieces.rim.push(free);
             }
             pieces.starts.push(pieces.voxels.len());
         }
@@ -90,54 +96,66 @@ impl Pieces {
         self.starts.len() - 1
     }
 
+    fn range(&self, piece: u32) -> Range<usize> {
+        self.starts[piece as usize]..self.starts[piece as usize + 1]
+    }
+
     fn voxels(&self, piece: u32) -> &[u32] {
-        &self.voxels[self.starts[piece as usize]..self.starts[piece as usize + 1]]
+        &self.voxels[self.range(piece)]
     }
 }
 
 /// Free voxels around the bodies, nearest first.
 struct Front<'a> {
     grid: &'a Grid,
-    /// Steps from the body to each free voxel met.
+    /// Steps from the body to each free voxel met; 0 on the grid's border, which is never entered.
     steps: Vec<u8>,
     /// Voxels to go on from and the body's voxel each came from, by steps.
     buckets: Vec<Vec<(u32, u32)>>,
     joined: Vec<bool>,
+    loose: usize,
 }
 
 impl<'a> Front<'a> {
     fn new(grid: &'a Grid, most_steps: usize, pieces: usize) -> Front<'a> {
-        Front { grid, steps: vec![u8::MAX; grid.len()], buckets: vec![Vec::new(); most_steps + 1], joined: vec![false; pieces] }
+        let mut steps = vec![u8::MAX; grid.len()];
+        let rows = (0..grid.row_count()).map(|row| (row * grid.size.x as usize, grid.voxel(row * grid.size.x as usize)));
+        for (first, voxel) in rows {
+            let last = first + grid.size.x as usize - 1;
+            let border = grid.on_border(voxel.with_x(1));
+            steps[first..=last].iter_mut().step_by(if border { 1 } else { last - first }).for_each(|s| *s = 0);
+        }
+        Front { grid, steps, buckets: vec![Vec::new(); most_steps + 1], joined: vec![false; pieces], loose: pieces }
     }
 
     /// Makes a piece part of the body.
     fn add(&mut self, pieces: &Pieces, piece: u32) {
         self.joined[piece as usize] = true;
-        self.buckets[0].extend(pieces.voxels(piece).iter().map(|&v| (v, v)));
-        pieces.voxels(piece).iter().for_each(|&v| self.steps[v as usize] = 0);
+        self.loose -= 1;
+        let rim = pieces.range(piece).filter(|&i| pieces.rim[i]).map(|i| pieces.voxels[i]);
+        self.buckets[0].extend(rim.map(|v| (v, v)));
     }
 
     /// Spreads to the widest gap and joins the pieces it meets; returns how many.
     fn grow(&mut self, pieces: &Pieces, solid: &mut [bool]) -> usize {
-        let mut joined = 0;
-        while let Some(at) = self.buckets.iter().position(|b| !b.is_empty()) {
+        let before = self.loose;
+        while let Some(at) = self.buckets.iter().position(|b| !b.is_empty()).filter(|_| self.loose > 0) {
             let Some((voxel, source)) = self.buckets[at].pop() else { break };
-            if usize::from(self.steps[voxel as usize]) < at {
+            if at > 0 && usize::from(self.steps[voxel as usize]) < at {
                 continue;
             }
             for near in self.grid.faces(voxel) {
-                let piece = pieces.of[near as usize];
+                let Some(&piece) = pieces.of.get(near as usize) else { continue };
                 if piece != NONE && !self.joined[piece as usize] {
                     thread(self.grid, solid, source, near);
                     self.add(pieces, piece);
-                    joined += 1;
                 } else if piece == NONE && at + 1 < self.buckets.len() && usize::from(self.steps[near as usize]) > at + 1 {
                     self.steps[near as usize] = (at + 1) as u8;
                     self.buckets[at + 1].push((near, source));
                 }
             }
         }
-        joined
+        before - self.loose
     }
 }
 

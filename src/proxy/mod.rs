@@ -29,7 +29,7 @@ use body::Body;
 use glam::Vec3;
 
 /// Version of this room, for stage keys.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 /// Share of the solid whose loss is worth a warning.
 const NOTABLE_SHARE: f64 = 1e-3;
 

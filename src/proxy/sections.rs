@@ -80,7 +80,8 @@ impl Sections {
             if over != NONE && !section.above.contains(&over) {
                 section.above.push(over);
             }
-            for near in grid.faces(voxel).filter(|&near| near as usize / slab == seed / slab) {
+            let [_, _, beside @ ..] = grid.faces(voxel);
+            for near in beside {
                 if solid[near as usize] && self.of[near as usize] == NONE {
                     self.of[near as usize] = id;
                     stack.push(near);
