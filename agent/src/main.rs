@@ -3,7 +3,6 @@
 mod cli;
 mod conversation;
 mod history;
-#[allow(dead_code)] // some of it serves the generated pages alone
 mod language;
 mod preview;
 mod tui;

@@ -120,11 +120,6 @@ fn tens(word: &str) -> Option<f64> {
     NAMES.iter().position(|n| *n == word).map(|n| 10.0 * (n as f64 + 2.0))
 }
 
-/// Whether a word is a number by itself.
-pub fn is_number_word(word: &str) -> bool {
-    small(word).is_some() || tens(word).is_some() || magnitude(word).is_some()
-}
-
 /// Number words: "twenty five", "three hundred and ten", "a hundred", "two point five", "a couple of".
 fn cardinal(tokens: &[Token], start: usize) -> Option<(f64, usize)> {
     let mut at = start;
@@ -320,11 +315,6 @@ fn base_unit(word: &str) -> Option<Unit> {
     };
     let (_, factor, exponents) = UNITS.iter().find(|(names, ..)| names.split(' ').any(|n| n == stem))?;
     Some(Unit { factor: *factor, exponents: *exponents }.power(exponent))
-}
-
-/// Whether a word is the name of a unit.
-pub fn is_unit_word(word: &str) -> bool {
-    base_unit(word).is_some()
 }
 
 /// Reads a unit: "m", "m/s2", "metres per second", "turns a second", "kilograms per cubic metre", "metres per second squared".

@@ -15,11 +15,6 @@ impl Token {
     fn new(text: &str, word: &str) -> Token {
         Token { text: text.to_owned(), word: word.to_owned(), number: None }
     }
-
-    /// Whether it can be reported as a word: it has a letter or a digit, or is a sign that nobody reads.
-    pub fn is_word(&self) -> bool {
-        self.word.chars().any(char::is_alphanumeric)
-    }
 }
 
 /// Splits a request. Signs that only quote or bracket are dropped; anything else becomes a token.
