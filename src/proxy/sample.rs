@@ -19,7 +19,7 @@ const HEIR_FRACTION: f32 = 0.5;
 /// Probes along an edge of a lattice cell, at most.
 const MOST_PROBES: f32 = 8.0;
 /// The lattice never has more cells.
-const MOST_CELLS: f64 = 2.0e8;
+const MOST_CELLS: f64 = 6.4e7;
 
 /// One particle to be.
 #[derive(Clone, Copy)]

@@ -63,21 +63,6 @@ fn scenes() -> Option<PathBuf> {
     None
 }
 
-/// Reads a `.splat` file whose up axis is +z.
-fn capture(path: PathBuf) -> Gaussians {
-    let bytes = std::fs::read(path).unwrap();
-    let mut gaussians = Gaussians::default();
-    for record in bytes.chunks_exact(32) {
-        let number = |i: usize| f32::from_le_bytes(record[4 * i..4 * i + 4].try_into().unwrap());
-        gaussians.mean.push(Vec3::new(number(0), number(1), number(2)));
-        gaussians.scale.push(Vec3::new(number(3), number(4), number(5)));
-        gaussians.opacity.push(f32::from(record[27]) / 255.0);
-        gaussians.rotation.push([28, 29, 30, 31].map(|i| (f32::from(record[i]) - 128.0) / 128.0));
-        gaussians.sh.extend([0.0; 3]);
-    }
-    gaussians
-}
-
 /// Particles in a box.
 fn inside(solid: &Solid, low: Vec3, high: Vec3) -> usize {
     solid.position_m.iter().filter(|p| p.cmpge(low).all() && p.cmple(high).all()).count()
@@ -344,7 +329,7 @@ fn captured_things_come_out_solid_at_draft_and_full() {
         ("vase", [Vec3::new(-0.03, 0.0, -0.55), Vec3::new(0.06, 0.15, -0.2)], 1e5..8e5),
         ("bulldozer", [Vec3::new(-0.6, 0.1, -0.35), Vec3::new(-0.4, 0.2, -0.25)], 5e4..5e5),
     ] {
-        let gaussians = capture(scenes.join(format!("{name}.splat")));
+        let gaussians = crate::scene::read(&scenes.join(format!("{name}.splat"))).unwrap().gaussians;
         let (low, high) = gaussians.bounds();
         let longest = (high - low).max_element();
         let built = [32.0, 64.0].map(|cells| solid(&gaussians, low.z, longest / cells, ProxyKind::Voxel));
