@@ -69,6 +69,16 @@ pub enum QualityFlag {
     Full,
 }
 
+impl QualityFlag {
+    /// As written on the command line.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            QualityFlag::Draft => "draft",
+            QualityFlag::Full => "full",
+        }
+    }
+}
+
 impl Flags {
     /// Which device to open.
     pub fn device_request(&self) -> DeviceRequest {

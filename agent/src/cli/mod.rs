@@ -2,6 +2,7 @@
 
 mod completions;
 pub mod crash;
+mod demo;
 mod diff;
 mod doctor;
 pub mod environment;
@@ -48,6 +49,8 @@ const EXIT_CODES: &str = "Exit codes: 0 ok · 1 failed · 2 command line · 3 sp
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// The built-in scene, five turns, offline, pictures in ./phystalk-demo
+    Demo,
     /// Say what should happen, without a terminal: one turn for each -p
     Exec(exec::Arguments),
     /// Run a spec, no language
@@ -72,6 +75,8 @@ enum Command {
     Still(still::Arguments),
     /// Compare frames with expected pictures
     Golden(golden::Arguments),
+    /// Look at versions: turn, play, compare
+    View(view::Arguments),
     /// What this machine offers, and what to do where something is missing
     Doctor,
     /// JSON Schema of a file or stream that other programs may rely on
@@ -110,6 +115,7 @@ fn run(cli: &Cli) -> Result<(), Failure> {
     let flags = &cli.flags;
     let Some(command) = &cli.command else { return repl::run(&cli.repl, flags) };
     match command {
+        Command::Demo => demo::run(flags),
         Command::Exec(arguments) => exec::run(arguments, flags),
         Command::Run(arguments) => run::run(arguments, flags),
         Command::Plan(arguments) => plan::run(arguments, flags),
@@ -122,6 +128,7 @@ fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Convert(arguments) => scene::convert(arguments, flags),
         Command::Still(arguments) => still::run(arguments, flags),
         Command::Golden(arguments) => golden::run(arguments, flags),
+        Command::View(arguments) => view::run(arguments, flags),
         Command::Doctor => doctor::run(flags),
         Command::Schema(arguments) => schema::run(arguments),
         Command::Completions(arguments) => completions::run(arguments),

@@ -34,7 +34,9 @@ pub fn adjusted(spec: Spec, flags: &Flags) -> Result<Spec, Failure> {
 /// a spec, and `builtin:demo` is the built-in scene.
 pub fn spec_of(scene: &str, flags: &Flags) -> Result<Spec, Failure> {
     let path = Path::new(scene);
-    let spec = if is_spec(scene) {
+    let spec = if scene == "builtin:demo" {
+        phystalk::scene::demo::spec()
+    } else if is_spec(scene) {
         Spec::read(path)?
     } else {
         let path = std::path::absolute(path).map_err(|e| Failure::file("find", path, &e))?;

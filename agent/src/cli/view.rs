@@ -1,14 +1,53 @@
 //! `phystalk view [SPEC|VERSION] --window`: the preview window, a process of its own.
 
-use super::exit::Failure;
+use super::exit::{Failure, Kind};
 use super::flags::Flags;
+use super::setup;
+use clap::Args;
 use std::process::{Command, Stdio};
+
+#[derive(Args, Debug)]
+pub struct Arguments {
+    /// A spec (.toml, .json) or a version to start with; alone: the last session's newest version
+    what: Option<String>,
+    /// In a window (the only way yet)
+    #[arg(long)]
+    window: bool,
+}
+
+pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
+    if !arguments.window {
+        return Err(Failure::new(Kind::Usage, "say how to view it: phystalk view --window"));
+    }
+    check_display()?;
+    open(arguments, flags)
+}
+
+#[cfg(feature = "window")]
+fn open(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
+    use crate::preview::window::{self, Setting, Source};
+    let store = setup::store(flags)?;
+    let chosen = match arguments.what.as_deref().filter(|w| !setup::is_spec(w)) {
+        Some(version) => Some(setup::session(flags, &store)?.find(version)?.name.clone()),
+        None => None,
+    };
+    let source = match arguments.what.as_deref().filter(|w| setup::is_spec(w)) {
+        Some(file) => Source::Spec(Box::new(setup::spec_of(file, flags)?)),
+        None => Source::Session(flags.session.clone()),
+    };
+    window::open(Setting { store, device: flags.device_request(), options: flags.run_options(), source }, chosen)
+}
+
+#[cfg(not(feature = "window"))]
+fn open(_: &Arguments, _: &Flags) -> Result<(), Failure> {
+    Ok(())
+}
 
 /// What opens the window beside this process, on the same store and session.
 pub fn opener(flags: &Flags, session: &str) -> Box<dyn Fn() -> Result<(), Failure>> {
     let (flags, session) = (flags.clone(), session.to_owned());
     Box::new(move || {
-        super::view::check_display()?;
+        check_display()?;
         let program = std::env::current_exe()?;
         let mut command = Command::new(program);
         command.args(["view", "--window", "--session", &session]);
@@ -20,6 +59,9 @@ pub fn opener(flags: &Flags, session: &str) -> Box<dyn Fn() -> Result<(), Failur
         }
         if flags.cpu {
             command.arg("--cpu");
+        }
+        if let Some(quality) = flags.quality {
+            command.args(["--quality", quality.as_str()]);
         }
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
         Ok(())

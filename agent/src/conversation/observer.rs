@@ -4,6 +4,7 @@ use super::files::Files;
 use super::{Event, Listener};
 use phystalk::stages::{Action, PlannedStage};
 use phystalk::{Frame, Progress, Sink};
+use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 /// Shortest time between two progress events of one stage.
@@ -17,13 +18,20 @@ pub struct Observer<'a> {
     stages: Vec<&'static str>,
     announced: usize,
     said: Option<Instant>,
+    /// Warnings that this conversation has heard: each is said once.
+    warned: &'a mut BTreeSet<String>,
 }
 
 impl<'a> Observer<'a> {
     /// A sink that writes frames where there are files to write.
-    pub fn new(listener: &'a mut dyn Listener, files: Option<&'a mut Files>, plan: &[PlannedStage]) -> Observer<'a> {
+    pub fn new(
+        listener: &'a mut dyn Listener,
+        files: Option<&'a mut Files>,
+        plan: &[PlannedStage],
+        warned: &'a mut BTreeSet<String>,
+    ) -> Observer<'a> {
         let works = plan.iter().filter(|s| matches!(s.action, Action::Run | Action::Resume)).map(|s| s.stage.as_str());
-        let mut observer = Observer { listener, files, stages: works.collect(), announced: 0, said: None };
+        let mut observer = Observer { listener, files, stages: works.collect(), announced: 0, said: None, warned };
         observer.announce_until(0);
         observer
     }
@@ -68,6 +76,8 @@ impl Sink for Observer<'_> {
     }
 
     fn warning(&mut self, text: &str) {
-        self.listener.event(Event::Warning { text: text.to_owned() });
+        if self.warned.insert(text.to_owned()) {
+            self.listener.event(Event::Warning { text: text.to_owned() });
+        }
     }
 }

@@ -10,6 +10,7 @@ use phystalk::Stop;
 use phystalk::gpu::Tier;
 use phystalk::spec::{Camera, Edit, Spec};
 use phystalk::stages::{Engine, Metrics, Plan, Report, RunOptions};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A session that is talked to.
@@ -24,6 +25,7 @@ pub struct Conversation {
     turns: u32,
     asked_for_cpu: bool,
     said_device: bool,
+    warned: BTreeSet<String>,
 }
 
 /// How a turn ended.
@@ -40,7 +42,7 @@ impl Conversation {
     pub fn new(engine: Engine, session: Session, options: RunOptions, out: Option<PathBuf>, asked_for_cpu: bool) -> Conversation {
         let resolved = session.head().and_then(|v| v.resolved.as_ref()?.as_object().cloned()).unwrap_or_default();
         let options = RunOptions { camera: session.camera(), ..options };
-        Conversation { engine, session, options, out, resolved, turns: 0, asked_for_cpu, said_device: false }
+        Conversation { engine, session, options, out, resolved, turns: 0, asked_for_cpu, said_device: false, warned: BTreeSet::new() }
     }
 
     /// Its session.
@@ -225,7 +227,7 @@ impl Conversation {
             files.json("plan.json", &plan)?;
         }
         listener.film(&version.name);
-        let mut observer = Observer::new(listener, files.as_mut(), &plan.stages);
+        let mut observer = Observer::new(listener, files.as_mut(), &plan.stages, &mut self.warned);
         let report = self.engine.run(&spec, Path::new(""), &self.options, previous, &mut observer, stop);
         let report = match (report, files) {
             (Ok(report), files) => {

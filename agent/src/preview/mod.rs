@@ -2,5 +2,7 @@
 
 mod film;
 pub mod terminal;
+#[cfg(feature = "window")]
+pub mod window;
 
 pub use film::{Picture, Reel};

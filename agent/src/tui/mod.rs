@@ -32,6 +32,9 @@ use transcript::Voice;
 /// Shortest time between two drawings.
 const BREATH: Duration = Duration::from_millis(16);
 
+/// How long leaving waits for the engine to come to its next batch.
+const FAREWELL: Duration = Duration::from_secs(2);
+
 /// What wakes the thread that draws.
 pub enum Message {
     /// A key, a paste, another size.
@@ -76,10 +79,14 @@ pub fn run(conversation: Conversation, store: &Store, options: Options) -> Resul
     let first = options.prompt.map(|p| app.enter(p, Instant::now())).unwrap_or_default();
     let result = attend(&mut app, &mut screen, &inbox, &desk, first);
     drop(screen);
-    // The engine ends at its next batch: the stop flag is up, and there is nobody left to ask.
+    // The engine ends at its next batch: the stop flag is up, and there is nobody left to ask. It is
+    // not waited for long: what it keeps appears whole or not at all.
     desk.stop();
     drop(desk);
-    let _ = engine.join();
+    let patience = Instant::now() + FAREWELL;
+    while !engine.is_finished() && Instant::now() < patience {
+        std::thread::sleep(BREATH);
+    }
     result
 }
 

@@ -1,0 +1,290 @@
+//! The thread that draws for the window: it owns an engine, follows the store, and renders what was
+//! asked for last.
+
+use crate::cli::exit::Failure;
+use crate::history::Session;
+use phystalk::gpu::DeviceRequest;
+use phystalk::spec::{Camera, Spec};
+use phystalk::stages::{Engine, Player, RunOptions};
+use phystalk::store::Store;
+use std::collections::VecDeque;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+use std::time::{Duration, Instant};
+
+/// How often the store is looked at.
+const LOOK: Duration = Duration::from_millis(500);
+/// Players kept ready; two are needed to compare.
+const PLAYERS: usize = 3;
+
+/// What is followed.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// All versions of a session, the last one where it has no name.
+    Session(Option<String>),
+    /// One spec.
+    Spec(Box<Spec>),
+}
+
+/// How the engine runs.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    /// Where results are.
+    pub store: Store,
+    /// On what.
+    pub device: DeviceRequest,
+    /// How fine: must be as the versions were run, since other motion has other keys.
+    pub options: RunOptions,
+    /// What is followed.
+    pub source: Source,
+}
+
+/// A picture that is wanted: only the newest wish counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wish {
+    /// Names of one version or two.
+    pub versions: Vec<String>,
+    /// Which frame.
+    pub frame: u32,
+    /// From where; none is from where the version itself looks.
+    pub camera: Option<Camera>,
+    /// Of each picture, pixels.
+    pub size: [u32; 2],
+}
+
+/// What the window may ask for.
+#[derive(Clone, Debug)]
+pub enum Request {
+    /// Draw.
+    Draw(Wish),
+    /// Simulate a version whose motion the store does not have.
+    Run(String),
+}
+
+/// One version of the list.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Listed {
+    /// Its name.
+    pub name: String,
+    /// What was said, and the note of an undo.
+    pub words: String,
+}
+
+/// What one version can show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extent {
+    /// Frames of motion that are there.
+    pub frames: u32,
+    /// Frames that the spec asks for.
+    pub frames_total: u32,
+    /// Frames a second.
+    pub fps: u32,
+    /// From where the version itself looks.
+    pub camera: Camera,
+}
+
+/// What the window hears.
+pub enum News {
+    /// The versions, and which one is newest.
+    Versions {
+        /// Name of the session, or of the spec's file.
+        title: String,
+        /// Oldest first.
+        list: Vec<Listed>,
+        /// The newest one's name.
+        head: Option<String>,
+    },
+    /// A picture of one version.
+    Picture {
+        /// Which of the wish's versions: 0 or 1.
+        place: usize,
+        /// Its name.
+        version: String,
+        /// Which frame.
+        frame: u32,
+        /// Width and height.
+        size: [u32; 2],
+        /// sRGB, opaque.
+        rgba8: Vec<u8>,
+        /// What the version can show.
+        extent: Extent,
+    },
+    /// A version whose motion is not in the store.
+    NotRun(String),
+    /// How far a run is, 0 to 1.
+    Running(f32),
+    /// Something failed.
+    Failed(String),
+}
+
+struct Ready {
+    version: String,
+    spec_hash: String,
+    looked: Instant,
+    player: Player,
+}
+
+/// Draws and follows until the window goes.
+pub struct Studio {
+    setting: Setting,
+    engine: Engine,
+    players: VecDeque<Ready>,
+    session: Option<Session>,
+    post: Sender<News>,
+    wake: Box<dyn Fn() + Send>,
+}
+
+impl Studio {
+    /// A studio that sends to `post` and calls `wake` after it.
+    pub fn new(setting: Setting, post: Sender<News>, wake: Box<dyn Fn() + Send>) -> Studio {
+        let engine = Engine::new(setting.store.clone(), setting.device.clone());
+        Studio { setting, engine, players: VecDeque::new(), session: None, post, wake }
+    }
+
+    /// Serves until the window is gone.
+    pub fn serve(mut self, requests: &Receiver<Request>) {
+        let mut last: Option<Wish> = None;
+        self.follow();
+        let mut looked = Instant::now();
+        loop {
+            let request = match requests.recv_timeout(LOOK) {
+                // Of the wishes that wait, the newest counts; a run is never skipped.
+                Ok(first) => requests.try_iter().fold(first, |kept, next| if matches!(kept, Request::Run(_)) { kept } else { next }),
+                Err(RecvTimeoutError::Disconnected) => return,
+                Err(RecvTimeoutError::Timeout) => match &last {
+                    Some(wish) if self.grows(wish) => Request::Draw(wish.clone()),
+                    _ => {
+                        self.follow();
+                        continue;
+                    }
+                },
+            };
+            if looked.elapsed() > LOOK {
+                self.follow();
+                looked = Instant::now();
+            }
+            let result = match request {
+                Request::Draw(wish) => {
+                    last = Some(wish.clone());
+                    self.draw(&wish)
+                }
+                Request::Run(version) => self.run(&version),
+            };
+            if let Err(failure) = result {
+                self.say(News::Failed(failure.message));
+            }
+        }
+    }
+
+    fn say(&self, news: News) {
+        // The window may be gone already; then there is nobody to tell.
+        let _ = self.post.send(news);
+        (self.wake)();
+    }
+
+    /// Reads the session anew and tells its versions.
+    fn follow(&mut self) {
+        let name = match &self.setting.source {
+            Source::Spec(spec) => {
+                let listed = Listed { name: SPEC.to_owned(), words: spec.scene.file.clone() };
+                self.say(News::Versions { title: spec.scene.file.clone(), list: vec![listed], head: Some(SPEC.to_owned()) });
+                return;
+            }
+            Source::Session(name) => name.clone(),
+        };
+        match Session::open(&self.setting.store, name.as_deref()) {
+            Ok(session) => {
+                let same = self.session.as_ref().is_some_and(|s| s.name() == session.name() && s.versions() == session.versions());
+                if !same {
+                    let words = |note: &str, words: &str| if note.is_empty() { words.to_owned() } else { format!("{words} ({note})") };
+                    let list = session.versions().iter().map(|v| Listed { name: v.name.clone(), words: words(&v.note, &v.words) }).collect();
+                    self.say(News::Versions { title: session.name().to_owned(), list, head: session.head().map(|v| v.name.clone()) });
+                }
+                self.session = Some(session);
+            }
+            Err(error) => self.say(News::Failed(error.to_string())),
+        }
+    }
+
+    fn spec(&self, version: &str) -> Result<Spec, Failure> {
+        match (&self.setting.source, &self.session) {
+            (Source::Spec(spec), _) => Ok((**spec).clone()),
+            (_, Some(session)) => Ok(session.spec_of(version)?),
+            (_, None) => Err(Failure::other("there is no session in this store yet")),
+        }
+    }
+
+    fn options(&self) -> RunOptions {
+        RunOptions { camera: self.session.as_ref().and_then(Session::camera), ..self.setting.options.clone() }
+    }
+
+    /// Whether a wished version had fewer frames than its spec asks for when it was last drawn.
+    fn grows(&self, wish: &Wish) -> bool {
+        let short = |name: &String| {
+            let ready = self.players.iter().find(|r| r.version == *name);
+            ready.is_none_or(|r| r.player.frames < r.player.frames_total)
+        };
+        wish.versions.iter().any(short)
+    }
+
+    /// The player of a version, made where there is none or the store has more of it by now.
+    fn player(&mut self, version: &str) -> Result<Option<usize>, Failure> {
+        let spec = self.spec(version)?;
+        let hash = spec.hash();
+        let fresh = |r: &Ready| r.player.frames >= r.player.frames_total || r.looked.elapsed() < LOOK;
+        if let Some(at) = self.players.iter().position(|r| r.version == version && r.spec_hash == hash && fresh(r)) {
+            return Ok(Some(at));
+        }
+        self.players.retain(|r| r.version != version);
+        let options = self.options();
+        let Some(player) = self.engine.player(&spec, Path::new(""), &options)? else { return Ok(None) };
+        if self.players.len() >= PLAYERS {
+            self.players.pop_front();
+        }
+        self.players.push_back(Ready { version: version.to_owned(), spec_hash: hash, looked: Instant::now(), player });
+        Ok(Some(self.players.len() - 1))
+    }
+
+    fn draw(&mut self, wish: &Wish) -> Result<(), Failure> {
+        for (place, version) in wish.versions.iter().enumerate() {
+            let Some(at) = self.player(version)? else {
+                self.say(News::NotRun(version.clone()));
+                continue;
+            };
+            let player = &mut self.players[at].player;
+            let camera = wish.camera.unwrap_or(player.camera);
+            let image = player.picture(&mut self.engine, wish.frame, &camera, wish.size)?;
+            let extent = Extent { frames: player.frames, frames_total: player.frames_total, fps: player.fps, camera: player.camera };
+            let frame = wish.frame.min(extent.frames.saturating_sub(1));
+            self.say(News::Picture { place, version: version.clone(), frame, size: image.size, rgba8: image.rgba8, extent });
+        }
+        Ok(())
+    }
+
+    fn run(&mut self, version: &str) -> Result<(), Failure> {
+        let spec = self.spec(version)?;
+        let options = RunOptions { render: false, ..self.options() };
+        let mut reporter = Reporter { post: &self.post, wake: &self.wake };
+        self.engine.run(&spec, Path::new(""), &options, None, &mut reporter, &phystalk::Stop::default())?;
+        self.say(News::Running(1.0));
+        Ok(())
+    }
+}
+
+/// What a spec without a session is called in the list.
+const SPEC: &str = "spec";
+
+/// Passes a run's progress on.
+struct Reporter<'a> {
+    post: &'a Sender<News>,
+    wake: &'a (dyn Fn() + Send),
+}
+
+impl phystalk::Sink for Reporter<'_> {
+    fn progress(&mut self, progress: phystalk::Progress) {
+        let _ = self.post.send(News::Running(progress.done as f32 / progress.total.max(1) as f32));
+        (self.wake)();
+    }
+    fn frame(&mut self, _: phystalk::Frame) {}
+    fn warning(&mut self, _: &str) {}
+}
