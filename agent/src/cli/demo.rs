@@ -18,11 +18,11 @@ pub fn run(flags: &Flags) -> Result<(), Failure> {
     let _guard = signals::stop_on_signal(&stop);
     if flags.json {
         let mut listener = JsonLines::new(&stop);
-        let code = exec::turns(&mut conversation, &turns, &mut listener, &stop);
+        let code = exec::turns(&mut conversation, Vec::new(), &turns, &mut listener, &stop);
         return if listener.broken { Err(Failure::silent(Kind::Pipe)) } else { Failure::from_code(code) };
     }
     let mut teller = Teller::new(flags.quiet, &stop);
-    let code = exec::turns(&mut conversation, &turns, &mut teller, &stop);
+    let code = exec::turns(&mut conversation, Vec::new(), &turns, &mut teller, &stop);
     if code == 0 && !flags.quiet {
         let folder = out.display();
         teller.tell(format!(

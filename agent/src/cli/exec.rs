@@ -7,40 +7,48 @@ use super::{setup, signals};
 use crate::conversation::{Conversation, Listener};
 use clap::Args;
 use phystalk::Stop;
+use phystalk::spec::Edit;
 
 #[derive(Args, Debug)]
 pub struct Arguments {
     /// Splat file (.ply, .splat), spec (.toml) or builtin:demo; not needed with --continue
     scene: Option<String>,
     /// What should happen; one turn each
-    #[arg(short, long = "prompt", value_name = "TEXT", required = true)]
+    #[arg(short, long = "prompt", value_name = "TEXT", required_unless_present = "set")]
     prompt: Vec<String>,
 }
 
 pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     let mut conversation = setup::converse(arguments.scene.as_deref(), flags, |session| Some(setup::default_out(flags, session)))?;
+    // The scene of a new session already has the `--set` edits; an old one gets them as a turn.
+    let edits = if conversation.session().head().is_some() { setup::edits(flags)? } else { Vec::new() };
     let stop = Stop::default();
     let _guard = signals::stop_on_signal(&stop);
     let (code, broken) = if flags.json {
         let mut listener = JsonLines::new(&stop);
-        (turns(&mut conversation, &arguments.prompt, &mut listener, &stop), listener.broken)
+        (turns(&mut conversation, edits, &arguments.prompt, &mut listener, &stop), listener.broken)
     } else {
         let mut listener = Teller::new(flags.quiet, &stop);
-        (turns(&mut conversation, &arguments.prompt, &mut listener, &stop), listener.broken)
+        (turns(&mut conversation, edits, &arguments.prompt, &mut listener, &stop), listener.broken)
     };
     if broken { Err(Failure::silent(Kind::Pipe)) } else { Failure::from_code(code) }
 }
 
-/// All turns, until one is stopped; the first exit code that is not 0.
-pub fn turns(conversation: &mut Conversation, prompts: &[String], listener: &mut dyn Listener, stop: &Stop) -> u8 {
+/// All turns, until one is stopped: first the edits, if there are any, then the prompts. The first
+/// exit code that is not 0.
+pub fn turns(conversation: &mut Conversation, edits: Vec<Edit>, prompts: &[String], listener: &mut dyn Listener, stop: &Stop) -> u8 {
     conversation.open(listener);
     let mut first = 0;
+    if !edits.is_empty() {
+        let words = edits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        first = conversation.edit(&words, edits, listener, stop).exit_code;
+    }
     for prompt in prompts {
-        let outcome = conversation.say(prompt, listener, stop);
-        first = if first == 0 { outcome.exit_code } else { first };
         if stop.raised() {
             break;
         }
+        let outcome = conversation.say(prompt, listener, stop);
+        first = if first == 0 { outcome.exit_code } else { first };
     }
     first
 }
