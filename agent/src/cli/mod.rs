@@ -1,5 +1,6 @@
 //! Commands, flags, exit codes. One command a file; [`main`] is the whole life of the process.
 
+mod bench;
 mod completions;
 pub mod crash;
 mod demo;
@@ -77,6 +78,8 @@ enum Command {
     Golden(golden::Arguments),
     /// Look at versions: turn, play, compare
     View(view::Arguments),
+    /// How fast this device is
+    Bench(bench::Arguments),
     /// What this machine offers, and what to do where something is missing
     Doctor,
     /// JSON Schema of a file or stream that other programs may rely on
@@ -129,6 +132,7 @@ fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Still(arguments) => still::run(arguments, flags),
         Command::Golden(arguments) => golden::run(arguments, flags),
         Command::View(arguments) => view::run(arguments, flags),
+        Command::Bench(arguments) => bench::run(arguments, flags),
         Command::Doctor => doctor::run(flags),
         Command::Schema(arguments) => schema::run(arguments),
         Command::Completions(arguments) => completions::run(arguments),
