@@ -47,6 +47,7 @@ pub(super) struct Ready {
     pub prepared: Made<Prepared>,
     pub resolved: Resolved,
     pub keys: StillKeys,
+    pub prestress: String,
     pub segments: Vec<Segment>,
     pub picture: String,
     pub draft: bool,
@@ -91,7 +92,7 @@ impl Engine {
         let segments = segments::layout(spec, &prestress, resolved.frames);
         let whole = segments.last().map_or("", |s| s.key.as_str());
         let picture = keys::picture(spec, whole, &keys, &resolved, gpu);
-        Ok(Ready { prepared, resolved, keys, segments, picture, draft })
+        Ok(Ready { prepared, resolved, keys, prestress, segments, picture, draft })
     }
 
     /// What a run would do, and why. Reasons compare with `previous`.

@@ -97,7 +97,7 @@ fn pin_until(pin: &Pin, to_s: f64) -> serde_json::Value {
 
 /// What the pictures depend on: the whole motion, the skin, the camera, the size, the renderer.
 pub(super) fn picture(spec: &Spec, motion: &str, keys: &StillKeys, resolved: &Resolved, gpu: &Gpu) -> String {
-    let shaders = text_hash(&(skin::shader_text() + &render::shader_text()));
+    let shaders = text_hash(&(skin::shader_text() + &render::shader_text() + &render::shadow::shader_text()));
     hash(
         "picture",
         &json!([

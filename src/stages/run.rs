@@ -50,6 +50,7 @@ pub(super) fn run(
     if !motion.keep_motion {
         warnings.push("the motion would take more than half of the store, so checkpoints alone are kept: a new camera simulates again".to_owned());
     }
+    warnings.extend(engine.store.take_damage());
     warnings.iter().for_each(|w| sink.warning(w));
 
     let wants_pictures = options.render;
@@ -192,7 +193,7 @@ impl<'a> Motion<'a> {
                     before = Some(kept);
                 }
                 None => {
-                    self.wake(before.take(), segment, spec, ready)?;
+                    self.wake(before.take(), segment, spec, ready, sink, stop)?;
                     stopped = self.simulate(segment, figure.as_mut(), spec, ready, &mut delivery, sink, stop)?;
                 }
             }
@@ -240,7 +241,15 @@ impl<'a> Motion<'a> {
     }
 
     /// Makes the world, at the state before a segment.
-    fn wake(&mut self, before: Option<Kept>, segment: &Segment, spec: &Spec, ready: &Ready) -> Result<(), EngineError> {
+    fn wake(
+        &mut self,
+        before: Option<Kept>,
+        segment: &Segment,
+        spec: &Spec,
+        ready: &Ready,
+        sink: &mut dyn Sink,
+        stop: &Stop,
+    ) -> Result<(), EngineError> {
         if self.world.is_some() {
             return Ok(());
         }
@@ -248,10 +257,34 @@ impl<'a> Motion<'a> {
         let mut world = World::new(&self.gpu, spec, self.matter, &ready.resolved)?;
         match before {
             Some(kept) => world.restore(segment.first.saturating_sub(1), &kept.checkpoint()?)?,
-            None => world.place(spec, self.matter)?,
+            None => {
+                self.stand(&mut world, spec, ready, sink, stop)?;
+                world.place(spec, self.matter)?;
+            }
         }
         self.world = Some(world);
         self.totals.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// The prestress, from the store or solved: gravity, support and matter decide it, launch and events do not.
+    fn stand(&self, world: &mut World, spec: &Spec, ready: &Ready, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
+        if let Some(entry) = pack::find(&self.store, "prestress", &ready.prestress)? {
+            if let Some(state) = pack::read::<u8>(&entry, "state")? {
+                return Ok(world.restore(0, &state)?);
+            }
+        }
+        let mut progress = |share: f32| {
+            let done = (share.clamp(0.0, 1.0) * 100.0) as u64;
+            sink.progress(Progress { stage: "standing", done, total: 100, seconds_left: None });
+        };
+        let report = world.prestress(spec, stop, &mut progress)?;
+        report.warnings.iter().for_each(|w| sink.warning(w));
+        if !stop.raised() {
+            let entry = self.store.begin("prestress", &ready.prestress)?;
+            entry.put("state", &world.checkpoint()?)?;
+            entry.finish(serde_json::json!({}))?;
+        }
         Ok(())
     }
 

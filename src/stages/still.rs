@@ -4,7 +4,7 @@
 use super::keys::{self, StillKeys};
 use super::{Action, EngineError, pack};
 use crate::proxy::{self, ProxyRequest, Solid};
-use crate::scene::{self, Gaussians, Loaded, SceneFrame};
+use crate::scene::{self, Format, Gaussians, Loaded, SceneFrame};
 use crate::skin::{self, Bound};
 use crate::spec::{Auto, Axis, Spec};
 use crate::store::Store;
@@ -41,6 +41,17 @@ impl<T> Clone for Made<T> {
 
 /// Reads the scene's file, or takes it from memory where path, length and time are unchanged.
 fn load(memory: &mut Memory, spec: &Spec, base: &Path) -> Result<Arc<Loaded>, EngineError> {
+    if spec.scene.file == BUILTIN_DEMO {
+        let tag = format!("{BUILTIN_DEMO} {}", spec.seed);
+        if let Some((known, loaded)) = &memory.file
+            && *known == tag
+        {
+            return Ok(loaded.clone());
+        }
+        let loaded = Arc::new(builtin(spec.seed));
+        memory.file = Some((tag, loaded.clone()));
+        return Ok(loaded);
+    }
     let path = base.join(&spec.scene.file);
     let stamp = std::fs::metadata(&path).ok().map(|m| format!("{} {} {:?}", path.display(), m.len(), m.modified().ok()));
     if let (Some((known, loaded)), Some(stamp)) = (&memory.file, &stamp)
@@ -53,6 +64,17 @@ fn load(memory: &mut Memory, spec: &Spec, base: &Path) -> Result<Arc<Loaded>, En
         memory.file = Some((stamp, loaded.clone()));
     }
     Ok(loaded)
+}
+
+/// The built-in scene, as if it had been read.
+fn builtin(seed: u64) -> Loaded {
+    let gaussians = scene::demo::gaussians(seed);
+    let mut hash = blake3::Hasher::new();
+    for array in [bytemuck::cast_slice::<_, u8>(&gaussians.mean), bytemuck::cast_slice(&gaussians.scale), bytemuck::cast_slice(&gaussians.rotation)] {
+        hash.update(array);
+    }
+    hash.update(bytemuck::cast_slice(&gaussians.opacity)).update(bytemuck::cast_slice(&gaussians.sh));
+    Loaded { gaussians, format: Format::Ply, warnings: Vec::new(), blake3: hash.finalize().to_hex().to_string(), stated_up: None }
 }
 
 /// Key and result of the scene stage.
@@ -93,7 +115,7 @@ fn axis(value: &Value) -> Option<Axis> {
 fn prune(loaded: &Loaded, spec: &Spec) -> (Axis, Vec<u8>) {
     let up = match spec.scene.up {
         Auto::Value(axis) => axis,
-        Auto::Auto => scene::guess_up(&loaded.gaussians).axis,
+        Auto::Auto => loaded.up().axis,
     };
     (up, scene::floaters(&loaded.gaussians).into_iter().map(u8::from).collect())
 }
@@ -124,7 +146,7 @@ fn divide(loaded: &Loaded, spec: &Spec, floater: &[u8], up: Axis) -> Result<Prep
     let lowest = Prepared::lowest(&gaussians, &object_of, &floater).map_or(0.0, f64::from);
     let mut warnings = loaded.warnings.clone();
     if spec.scene.up == Auto::Auto {
-        let guess = scene::guess_up(&loaded.gaussians);
+        let guess = loaded.up();
         warnings.extend((!guess.why.is_empty()).then(|| format!("up axis taken as {}: {}", axis_name(up), guess.why)));
     }
     let ground_m = spec.world.ground.height_m.unwrap_or(lowest);

@@ -2,10 +2,10 @@
 
 use super::bodies::Matter;
 use super::settings::settings;
-use crate::Stop;
 use crate::gpu::{Gpu, Recording};
 use crate::solver::{Advance, Placement, Solver, SolverError};
-use crate::spec::{Event, Spec};
+use crate::spec::{Event, Rest, Spec};
+use crate::{Stop, solver};
 use glam::{EulerRot, Quat, Vec3};
 
 use super::Resolved;
@@ -52,6 +52,12 @@ impl World {
         let mut events: Vec<TimedEvent> = spec.events.iter().filter_map(|e| Some(timed(e, index_of(&e.object)? as u32))).collect();
         events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
         Ok(World { gpu: gpu.clone(), solver, events, fps: spec.time.fps, frame: 0 })
+    }
+
+    /// Solves the prestress of every object that stands as captured.
+    pub fn prestress(&mut self, spec: &Spec, stop: &Stop, progress: &mut dyn FnMut(f32)) -> Result<solver::PrestressReport, SolverError> {
+        let standing: Vec<u32> = (0..spec.objects.len() as u32).filter(|&i| spec.objects[i as usize].rest == Rest::AsCaptured).collect();
+        self.solver.prestress(&standing, stop, progress)
     }
 
     /// Moves every object to where the spec starts it, with its velocity and spin.
