@@ -7,7 +7,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
-    /// 32 cells along the longest side, 640 x 360.
+    /// 24 cells along the longest side, 640 x 360.
     Draft,
     /// 64 cells along the longest side, 1280 x 720.
     Full,

@@ -4,7 +4,7 @@ use super::Prepared;
 use super::measure::Bodies;
 use crate::proxy::{self, Solid};
 use crate::solver::Particles;
-use crate::spec::{Auto, Material, Spec};
+use crate::spec::{Auto, Material, Rest, Spec};
 use glam::Vec3;
 
 /// Particles of all objects, one object after another, and what was decided about them.
@@ -56,22 +56,21 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     let members = prepared.gaussians.subset(&prepared.members(index as u32, false));
     let auto = proxy::young_auto(&members, prepared.ground_m as f32, density);
     let count = solid.position_m.len();
-    let young_local: Vec<f32> = match elastic.young_pa {
-        Auto::Auto => {
-            matter.warnings.extend(auto.warnings.iter().map(|w| format!("{}: {w}", object.name)));
-            proxy::nearest(&members, &solid.position_m).iter().map(|&g| auto.local[g as usize]).collect()
-        }
-        Auto::Value(young) => {
-            if young < auto.value_pa / 4.0 && object.rest == crate::spec::Rest::AsCaptured {
-                matter.warnings.push(format!(
-                    "{}: at {young:.3e} Pa its most slender part cannot carry its own weight and will sag; it stands by itself from about {:.1e} Pa",
-                    object.name,
-                    auto.value_pa / 4.0
-                ));
-            }
-            vec![young as f32; count]
-        }
-    };
+    let young_pa = elastic.young_pa.unwrap_or(auto.value_pa);
+    let standing = object.rest == Rest::AsCaptured;
+    if elastic.young_pa == Auto::Auto {
+        matter.warnings.extend(auto.warnings.iter().map(|w| format!("{}: {w}", object.name)));
+    } else if standing && young_pa < auto.value_pa / 4.0 {
+        matter.warnings.push(format!(
+            "{}: at {young_pa:.3e} Pa its most slender part cannot carry its own weight and will sag; it stands by itself from about {:.1e} Pa",
+            object.name,
+            auto.value_pa / 4.0
+        ));
+    }
+    // Parts that need more to stand keep their share over the rest when the whole is made softer or stiffer.
+    let nearest = proxy::nearest(&members, &solid.position_m);
+    let share = |g: u32| if standing { auto.local[g as usize] / auto.value_pa as f32 } else { 1.0 };
+    let young_local = nearest.iter().map(|&g| young_pa as f32 * share(g));
     let start = matter.bodies.mass_kg.len();
     let particles = &mut matter.particles;
     particles.position_m.extend(&solid.position_m);
@@ -88,7 +87,7 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     matter.bodies.ranges.push(start..start + count);
     matter.bodies.mass_kg.extend(mass);
     matter.bodies.volume_m3.extend(&solid.volume_m3);
-    matter.young_pa.push(elastic.young_pa.unwrap_or(auto.value_pa));
+    matter.young_pa.push(young_pa);
     matter.centre_m.push((moment / total.max(f64::MIN_POSITIVE)).as_vec3());
     matter.fill_ratio.push(f64::from(solid.fill_ratio));
     matter.gaussians.push(prepared.members(index as u32, true).len());

@@ -5,7 +5,7 @@ use crate::spec::{Auto, Camera, Spec};
 use serde_json::{Map, Value, json};
 
 /// Grid cells along the longest side of the objects where the spec leaves it to the quality.
-pub const CELLS_ACROSS_DRAFT: u32 = 32;
+pub const CELLS_ACROSS_DRAFT: u32 = 24;
 /// As above, for full quality.
 pub const CELLS_ACROSS_FULL: u32 = 64;
 /// Picture size in draft.
