@@ -269,10 +269,10 @@ impl<'a> Motion<'a> {
 
     /// The prestress, from the store or solved: gravity, support and matter decide it, launch and events do not.
     fn stand(&self, world: &mut World, spec: &Spec, ready: &Ready, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
-        if let Some(entry) = pack::find(&self.store, "prestress", &ready.prestress)? {
-            if let Some(state) = pack::read::<u8>(&entry, "state")? {
-                return Ok(world.restore(0, &state)?);
-            }
+        if let Some(entry) = pack::find(&self.store, "prestress", &ready.prestress)?
+            && let Some(state) = pack::read::<u8>(&entry, "state")?
+        {
+            return Ok(world.restore(0, &state)?);
         }
         let mut progress = |share: f32| {
             let done = (share.clamp(0.0, 1.0) * 100.0) as u64;
