@@ -20,6 +20,8 @@ pub struct Teller {
     folder: Option<PathBuf>,
     frames: u32,
     pictured: bool,
+    /// Words not understood, held back until it is known whether the failure repeats them.
+    words: Vec<String>,
     /// The reader of standard output went away.
     pub broken: bool,
 }
@@ -27,7 +29,7 @@ pub struct Teller {
 impl Teller {
     /// A teller; a broken pipe raises `stop`.
     pub fn new(quiet: bool, stop: &Stop) -> Teller {
-        Teller { quiet, stop: stop.clone(), bar: Bar::new(quiet), folder: None, frames: 0, pictured: false, broken: false }
+        Teller { quiet, stop: stop.clone(), bar: Bar::new(quiet), folder: None, frames: 0, pictured: false, words: Vec::new(), broken: false }
     }
 
     /// Prints one line of result above the progress.
@@ -69,6 +71,10 @@ impl Teller {
 
 impl Listener for Teller {
     fn event(&mut self, event: Event) {
+        let words = std::mem::take(&mut self.words);
+        if !words.is_empty() && !matches!(event, Event::TurnFailed { .. }) {
+            self.warn(format!("not understood: {}", words.join(", ")));
+        }
         match event {
             Event::SessionStarted { session, scene, .. } => self.aside(format!("session {session}: {scene}")),
             Event::TurnStarted { text, .. } => self.aside(format!("\n> {text}")),
@@ -84,7 +90,7 @@ impl Listener for Teller {
             Event::FrameReady { path, .. } => self.frame_written(&path),
             Event::MetricsReady { path } => self.folder = path.parent().map(Path::to_path_buf),
             Event::Warning { text } => self.warn(format!("warning: {text}")),
-            Event::NotUnderstood { words } => self.warn(format!("not understood: {}", words.join(", "))),
+            Event::NotUnderstood { words } => self.words = words,
             Event::Usage { .. } => {}
             Event::TurnCompleted { .. } => {
                 let summary = self.bar.summary();

@@ -96,7 +96,7 @@ impl Conversation {
         self.begin(words, listener);
         let before = self.session.spec().clone();
         let from = self.head_name();
-        let result = go(&mut self.session, words).and_then(|version| self.made(version, from, &before, listener, stop));
+        let result = self.able().and_then(|()| go(&mut self.session, words)).and_then(|version| self.made(version, from, &before, listener, stop));
         end(result, listener)
     }
 
@@ -169,14 +169,17 @@ impl Conversation {
                 self.accept(words, edits, listener, stop).map_err(as_refusal)
             }
             Reply::Undo(steps) => {
+                self.able()?;
                 let version = self.session.undo(words, steps)?;
                 self.made(version, from, &spec, listener, stop)
             }
             Reply::Redo(steps) => {
+                self.able()?;
                 let version = self.session.redo(words, steps)?;
                 self.made(version, from, &spec, listener, stop)
             }
             Reply::BackTo(reference) => {
+                self.able()?;
                 let version = self.session.back_to(words, &version_name(reference))?;
                 self.made(version, from, &spec, listener, stop)
             }
@@ -197,8 +200,20 @@ impl Conversation {
             listener.event(Event::Message { text: "nothing to change: it is so already".to_owned() });
             return Ok(Ended::Completed(None));
         }
+        self.able()?;
         let version = self.session.commit(words, &edits, &after)?;
         self.made(version, from, &before, listener, stop)
+    }
+
+    /// Whether a version could be run: there is a device and a folder for its files. Asked before it
+    /// is made, so that none is made in vain.
+    fn able(&mut self) -> Result<(), Failure> {
+        self.engine.device()?;
+        match &self.out {
+            Some(out) => std::fs::create_dir_all(out)
+                .map_err(|e| Failure::other(format!("{} cannot be written to: {e}\nname another folder with --out", out.display()))),
+            None => Ok(()),
+        }
     }
 
     /// Announces a version that is in the store, and runs it.

@@ -114,6 +114,8 @@ pub struct App {
     pub running: Option<Running>,
     /// Whether the preview is folded away or out, where the user said.
     pub preview_shown: Option<bool>,
+    /// Words not understood, held back until it is known whether the failure repeats them.
+    words: Vec<String>,
     queue: VecDeque<String>,
     last_interrupt: Option<Instant>,
 }
@@ -131,6 +133,7 @@ impl App {
             device: String::new(),
             running: None,
             preview_shown: None,
+            words: Vec::new(),
             queue: VecDeque::new(),
             last_interrupt: None,
         }
@@ -290,6 +293,10 @@ impl App {
     }
 
     fn event(&mut self, event: Event) {
+        let words = std::mem::take(&mut self.words);
+        if !words.is_empty() && !matches!(event, Event::TurnFailed { .. }) {
+            self.transcript.add(Voice::Warning, format!("not understood: {}", words.join(", ")));
+        }
         match event {
             Event::Message { text } => self.transcript.add(Voice::Agent, text),
             Event::SpecEdited { from, to, changes, .. } => {
@@ -307,7 +314,7 @@ impl App {
             }
             Event::StageProgress { stage, done, total, seconds_left } => self.at_stage(stage, (done, total), seconds_left),
             Event::Warning { text } => self.transcript.add(Voice::Warning, text),
-            Event::NotUnderstood { words } => self.transcript.add(Voice::Warning, format!("not understood: {}", words.join(", "))),
+            Event::NotUnderstood { words } => self.words = words,
             Event::TurnFailed { error, .. } => self.transcript.add(Voice::Error, error),
             Event::TurnCancelled { .. } => self.transcript.add(Voice::Warning, "stopped; what was done is kept"),
             Event::SessionStarted { .. }
