@@ -1,7 +1,7 @@
 // Sort, first pass: counts the particles of each cell and block, and marks the blocks that they may
 // reach before the next sort.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read_write> cell_count: array<atomic<u32>>;
 // Two words a block: particles, and whether it is active.

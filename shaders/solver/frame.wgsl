@@ -1,7 +1,7 @@
 // What others see of the particles, in their original order: position, visual deformation
 // G = F F0^-1 as halves of G - I, velocity, and the volume ratio.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> matter: array<vec4<f32>>;
 // Rows of F0^-1, three vec4 a particle, in the original order.

@@ -1,7 +1,7 @@
 // Grid to particles: gathers velocity and its gradient, moves, deforms, and prepares the stress that
 // the next substep hands to the grid.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read_write> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read_write> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> velocity: array<vec4<f32>>;

@@ -1,7 +1,7 @@
 // Sort, last pass: within each cell by original index, so that the order depends on positions alone
 // and every f32 sum over it repeats to the bit. Copies the particles into that order.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> slots: array<vec4<u32>>;
 @group(0) @binding(2) var<storage, read> kinematics: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> matter: array<vec4<f32>>;

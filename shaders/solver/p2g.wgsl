@@ -5,7 +5,7 @@
 // rounding to nearest would brake what moves slowly), and adds to the grid. Integer sums do not
 // depend on who comes first.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> colliders: array<Collider>;

@@ -24,11 +24,17 @@ struct Search {
     done: u32,
 }
 
-// What a pass of the search is for, in the immediates' last word.
+// What a pass of the search is for, in the immediates' last word. It is read through `steer` with a
+// word of a buffer that is under 2^31: lavapipe compiles a pass anew for each value of an immediate
+// that alone decides a branch.
 const SET_UP: u32 = 0u;
 const CURVATURE: u32 = 1u;
 const TURN: u32 = 2u;
 const ADOPT: u32 = 3u;
+
+fn steer(job: u32, word: u32) -> u32 {
+    return job + (word >> 31u);
+}
 
 fn hold(v: vec3<f32>, bound: vec4<f32>) -> vec3<f32> {
     if (bound.w == 2.0) {

@@ -1,6 +1,6 @@
 // Prestress: adds up what the blocks found and chooses the next step. One workgroup.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
 @group(0) @binding(2) var<storage, read> partial: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> search: Search;
@@ -16,9 +16,10 @@ fn main(@builtin(local_invocation_index) lane: u32) {
     if (lane != 0u) {
         return;
     }
-    if (substep.job == SET_UP || substep.job == ADOPT) {
+    let job = steer(substep.job, params.count);
+    if (job == SET_UP || job == ADOPT) {
         search = Search(0.0, 0.0, sum.z, 0.0, sum.x, sum.y, 0u, 0u);
-    } else if (substep.job == CURVATURE) {
+    } else if (job == CURVATURE) {
         // No curvature along the direction, or a number that is none: as far as f32 goes.
         if (!(sum.x > 0.0)) {
             search.done = 1u;

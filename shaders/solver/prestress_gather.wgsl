@@ -5,7 +5,7 @@
 // as a linear solid would carry it, A = -(4 / cell^2) volume (2 mu eps + lambda tr eps I); to take it
 // over (job ADOPT) F becomes the symmetric stretch whose true stress it is.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read_write> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read_write> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> velocity: array<vec4<f32>>;
@@ -54,7 +54,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let mu = matter[i].w;
     let lambda = matter[n + i].w;
     let weight = select(0.0, 4.0 * params.per_m * params.per_m * matter[2u * n + i].w, takes_part);
-    let adopt = substep.job == ADOPT;
+    let adopt = steer(substep.job, params.count) == ADOPT;
     var tau = linear_stress(0.5 * (gradient + transpose(gradient)), mu, lambda);
     if (adopt && takes_part) {
         let neo_hookean = (bitcast<u32>(matter[3u * n + i].y) >> 16u) == 1u;

@@ -1,6 +1,6 @@
 // Prestress, on the grid: what the stiffness makes of the present direction, and the curvature.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
 @group(0) @binding(2) var<storage, read_write> sums: array<vec4<i32>>;
 @group(0) @binding(3) var<storage, read_write> marks: array<vec2<u32>>;

@@ -7,7 +7,7 @@ struct Pin {
     high: vec4<f32>,
 }
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
 @group(0) @binding(2) var<storage, read> colliders: array<Collider>;
 @group(0) @binding(3) var<storage, read> pins: array<Pin>;
@@ -56,7 +56,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         let force = select(vec3<f32>(0.0), vec3<f32>(sum.xyz) / momentum_unit, mass > 0.0);
 
         // The first time, with no stress yet, the force is the node's weight.
-        let first = substep.job == SET_UP;
+        let first = steer(substep.job, params.count) == SET_UP;
         var bound = nodes[BOUND * count + k];
         var weight = nodes[SOLUTION * count + k].w;
         if (first) {

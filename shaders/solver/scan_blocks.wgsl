@@ -1,7 +1,7 @@
 // Sort, third pass: where each block's particles begin, and the list of active blocks in ascending
 // order. Leaves `block_info` zeroed for the next sort.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read_write> block_info: array<vec2<u32>>;
 @group(0) @binding(2) var<storage, read> chunk_sums: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read_write> block_start: array<u32>;

@@ -1,6 +1,6 @@
 // Sort, fourth pass: where each cell's particles begin. One workgroup for each active block.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
 @group(0) @binding(2) var<storage, read> block_start: array<u32>;
 @group(0) @binding(3) var<storage, read> cell_count: array<u32>;

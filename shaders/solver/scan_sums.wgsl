@@ -1,6 +1,6 @@
 // Sort, second pass: particles and active blocks of each chunk of SCAN_LANES * SCAN_RUN blocks.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> block_info: array<vec2<u32>>;
 @group(0) @binding(2) var<storage, read_write> chunk_sums: array<vec2<u32>>;
 

@@ -1,7 +1,7 @@
 // Sort, fifth pass: each particle takes a slot of its cell, in whatever order they come; the next
 // pass puts them in order. Counts are back at zero when all are placed.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> cell_count: array<atomic<u32>>;

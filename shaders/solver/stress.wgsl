@@ -1,7 +1,7 @@
 // Start of a segment: adds the stress to A, for the length of the segment's first substep, and
 // measures the momenta that its fixed-point scale is made from.
 
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read_write> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> control: Control;

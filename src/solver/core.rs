@@ -11,7 +11,8 @@ use crate::gpu::{Gpu, Recording};
 use bytemuck::{Pod, Zeroable};
 use glam::{IVec3, Mat3, Vec3};
 
-/// `Params` of `shaders/solver/common.wgsl`.
+/// `Params` of `shaders/solver/common.wgsl`, in a storage buffer: lavapipe compiles a pass anew for each
+/// value of a uniform or an immediate that alone decides a branch or a loop.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(super) struct Params {
@@ -99,7 +100,7 @@ impl Solver {
         let identity = Mat3::IDENTITY.to_cols_array_2d().map(|row| [row[0], row[1], row[2], 0.0]);
         let solver = Solver {
             passes: Passes::new(gpu),
-            params_buffer: gpu.uniform("solver.params", &params),
+            params_buffer: gpu.storage_from("solver.params", &[params])?,
             colliders_buffer: gpu.storage_from("solver.colliders", &padded(&colliders, 1))?,
             pins_buffer: gpu.storage::<PinRecord>("solver.pins", settings.pins.len().max(1))?,
             objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,

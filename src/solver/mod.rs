@@ -16,6 +16,7 @@ mod passes;
 mod prestress;
 mod state;
 mod types;
+pub mod validate;
 mod watch;
 
 #[cfg(test)]

@@ -45,15 +45,11 @@ pub(super) fn colliders(settings: &Settings) -> Vec<ColliderRecord> {
     ground.into_iter().chain(others).collect()
 }
 
-/// A pin that is thinner than a cell is thickened to one, so that it holds at least one layer of
-/// nodes; around the object's box there is room for the nodes that its outermost particles reach.
+/// A pin holds the nodes up to half a cell around its shape, so that it holds what is in it, and at
+/// least one layer; around the object's box there is room for the nodes that its outermost particles
+/// reach.
 pub(super) fn pin(region: &PinRegion, cell_m: f32) -> PinRecord {
-    let thinnest_m = match &region.shape {
-        ColliderShape::Box(b) => b.size_m.iter().copied().fold(f64::INFINITY, f64::min) as f32,
-        ColliderShape::Sphere(s) => 2.0 * s.radius_m as f32,
-        ColliderShape::Plane(_) => cell_m,
-    };
-    let (at, shape) = geometry(&region.shape, (0.5 * (cell_m - thinnest_m)).max(0.0));
+    let (at, shape) = geometry(&region.shape, 0.5 * cell_m);
     let room = Vec3::splat(2.0 * cell_m);
     PinRecord { at, shape, low: (region.low_m - room).extend(0.0).into(), high: (region.high_m + room).extend(0.0).into() }
 }
@@ -63,7 +59,7 @@ fn geometry(shape: &ColliderShape, grow_m: f32) -> ([f32; 4], [f32; 4]) {
     match shape {
         ColliderShape::Plane(p) => {
             let normal = DVec3::from(p.normal).normalize_or(DVec3::Z).as_vec3();
-            (point(&p.point_m).extend(0.0).into(), normal.extend(0.0).into())
+            ((point(&p.point_m) + normal * grow_m).extend(0.0).into(), normal.extend(0.0).into())
         }
         ColliderShape::Box(b) => {
             let half = point(&b.size_m) * 0.5 + Vec3::splat(grow_m);

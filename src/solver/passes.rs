@@ -2,7 +2,7 @@
 
 use super::constants;
 use crate::gpu::{Access, Gpu, Kernel, KernelSource};
-use Access::{Read, Uniform, Write};
+use Access::{Read, Write};
 
 macro_rules! shader {
     ($name:literal) => {
@@ -29,28 +29,28 @@ pub fn kernels() -> Vec<KernelSource> {
 /// In the order of [`Passes`].
 fn sources() -> [KernelSource; 18] {
     [
-        source("solver.bin", vec![shader!("control"), shader!("cell"), shader!("bin")], &[Uniform, Read, Write, Write, Write], 0),
-        source("solver.scan_sums", vec![shader!("scan"), shader!("scan_sums")], &[Uniform, Read, Write], 0),
-        source("solver.scan_blocks", vec![shader!("scan"), shader!("scan_blocks")], &[Uniform, Write, Read, Write, Write, Write], 0),
-        source("solver.scan_cells", vec![shader!("scan"), shader!("scan_cells")], &[Uniform, Read, Read, Read, Write], 0),
-        source("solver.scatter", vec![shader!("cell"), shader!("scatter")], &[Uniform, Read, Read, Write, Read, Write], 0),
-        source("solver.order", vec![shader!("order")], &[Uniform, Read, Read, Read, Write, Write], 0),
+        source("solver.bin", vec![shader!("control"), shader!("cell"), shader!("bin")], &[Read, Read, Write, Write, Write], 0),
+        source("solver.scan_sums", vec![shader!("scan"), shader!("scan_sums")], &[Read, Read, Write], 0),
+        source("solver.scan_blocks", vec![shader!("scan"), shader!("scan_blocks")], &[Read, Write, Read, Write, Write, Write], 0),
+        source("solver.scan_cells", vec![shader!("scan"), shader!("scan_cells")], &[Read, Read, Read, Read, Write], 0),
+        source("solver.scatter", vec![shader!("cell"), shader!("scatter")], &[Read, Read, Read, Write, Read, Write], 0),
+        source("solver.order", vec![shader!("order")], &[Read, Read, Read, Read, Write, Write], 0),
         source(
             "solver.stress",
             vec![shader!("control"), shader!("substep"), shader!("material"), shader!("particle"), shader!("particle_write"), shader!("stress")],
-            &[Uniform, Write, Read, Write],
+            &[Read, Write, Read, Write],
             SUBSTEP,
         ),
         source(
             "solver.p2g",
             vec![shader!("control"), shader!("substep"), shader!("particle"), shader!("contact"), shader!("p2g")],
-            &[Uniform, Read, Read, Read, Write, Write, Write],
+            &[Read, Read, Read, Read, Write, Write, Write],
             SUBSTEP,
         ),
         source(
             "solver.grid",
             vec![shader!("control"), shader!("substep"), shader!("contact"), shader!("grid")],
-            &[Uniform, Read, Read, Read, Write, Write, Write, Write],
+            &[Read, Read, Read, Read, Write, Write, Write, Write],
             SUBSTEP,
         ),
         source(
@@ -65,11 +65,11 @@ fn sources() -> [KernelSource; 18] {
                 shader!("gather"),
                 shader!("g2p"),
             ],
-            &[Uniform, Write, Write, Read, Read, Read, Write],
+            &[Read, Write, Write, Read, Read, Read, Write],
             SUBSTEP,
         ),
-        source("solver.measure", vec![shader!("control"), shader!("particle"), shader!("measure")], &[Uniform, Read, Read, Write], 0),
-        source("solver.kick", vec![shader!("particle"), shader!("particle_write"), shader!("kick")], &[Uniform, Write, Read], KICK),
+        source("solver.measure", vec![shader!("control"), shader!("particle"), shader!("measure")], &[Read, Read, Read, Write], 0),
+        source("solver.kick", vec![shader!("particle"), shader!("particle_write"), shader!("kick")], &[Read, Write, Read], KICK),
         source(
             "solver.prestress_gather",
             vec![
@@ -82,7 +82,7 @@ fn sources() -> [KernelSource; 18] {
                 shader!("gather"),
                 shader!("prestress_gather"),
             ],
-            &[Uniform, Write, Write, Read, Write],
+            &[Read, Write, Write, Read, Write],
             SUBSTEP,
         ),
         source(
@@ -95,28 +95,28 @@ fn sources() -> [KernelSource; 18] {
                 shader!("prestress_sum"),
                 shader!("prestress_residual"),
             ],
-            &[Uniform, Read, Read, Read, Write, Write, Write, Write, Write, Write],
+            &[Read, Read, Read, Read, Write, Write, Write, Write, Write, Write],
             SUBSTEP,
         ),
         source(
             "solver.prestress_product",
             vec![shader!("control"), shader!("substep"), shader!("prestress"), shader!("prestress_sum"), shader!("prestress_product")],
-            &[Uniform, Read, Write, Write, Write, Write, Write],
+            &[Read, Read, Write, Write, Write, Write, Write],
             SUBSTEP,
         ),
         source(
             "solver.prestress_control",
             vec![shader!("substep"), shader!("prestress"), shader!("prestress_sum"), shader!("prestress_control")],
-            &[Uniform, Read, Read, Write],
+            &[Read, Read, Read, Write],
             SUBSTEP,
         ),
         source(
             "solver.prestress_update",
             vec![shader!("substep"), shader!("prestress"), shader!("prestress_sum"), shader!("prestress_update")],
-            &[Uniform, Read, Read, Write, Write, Write],
+            &[Read, Read, Read, Write, Write, Write],
             SUBSTEP,
         ),
-        source("solver.frame", vec![shader!("particle"), shader!("frame")], &[Uniform, Read, Read, Read, Write, Write], 0),
+        source("solver.frame", vec![shader!("particle"), shader!("frame")], &[Read, Read, Read, Read, Write, Write], 0),
     ]
 }
 

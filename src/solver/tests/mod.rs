@@ -2,35 +2,12 @@
 
 mod motion;
 mod prestress;
+mod validation;
 
+use super::validate::block;
 use super::{Particles, Settings, Solver};
 use crate::gpu::Gpu;
-use crate::spec::ElasticModel;
 use glam::Vec3;
-
-/// A box of regularly spaced particles of density 1000.
-pub(super) fn block(low_m: Vec3, size_m: Vec3, spacing_m: f32, young_pa: f32, poisson: f32) -> Particles {
-    let counts = (size_m / spacing_m).round().as_uvec3();
-    let mut position_m = Vec::new();
-    for z in 0..counts.z {
-        for y in 0..counts.y {
-            for x in 0..counts.x {
-                position_m.push(low_m + (Vec3::new(x as f32, y as f32, z as f32) + 0.5) * spacing_m);
-            }
-        }
-    }
-    let n = position_m.len();
-    Particles {
-        position_m,
-        velocity_m_s: vec![Vec3::ZERO; n],
-        volume_m3: vec![spacing_m.powi(3); n],
-        density_kg_m3: vec![1000.0; n],
-        young_pa: vec![young_pa; n],
-        poisson: vec![poisson; n],
-        model: vec![ElasticModel::Corotated; n],
-        object: vec![0; n],
-    }
-}
 
 pub(super) fn solver(settings: Settings, particles: &Particles) -> Solver {
     let gpu = Gpu::shared_for_tests().expect("a device");

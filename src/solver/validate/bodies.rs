@@ -1,0 +1,68 @@
+//! Bodies of regularly spaced particles, and what is measured of them.
+
+use crate::solver::core::Solver;
+use crate::solver::state::ParticleState;
+use crate::solver::types::{Particles, SolverError};
+use crate::spec::ElasticModel;
+use glam::{DVec3, Vec3};
+
+/// A box filled at a spacing, 1000 kg/m^3, fixed corotated.
+pub(in crate::solver) fn block(low_m: Vec3, size_m: Vec3, spacing_m: f32, young_pa: f32, poisson: f32) -> Particles {
+    let counts = (size_m / spacing_m).round().as_uvec3();
+    let mut position_m = Vec::new();
+    for z in 0..counts.z {
+        for y in 0..counts.y {
+            for x in 0..counts.x {
+                position_m.push(low_m + (Vec3::new(x as f32, y as f32, z as f32) + 0.5) * spacing_m);
+            }
+        }
+    }
+    let n = position_m.len();
+    Particles {
+        position_m,
+        velocity_m_s: vec![Vec3::ZERO; n],
+        volume_m3: vec![spacing_m.powi(3); n],
+        density_kg_m3: vec![1000.0; n],
+        young_pa: vec![young_pa; n],
+        poisson: vec![poisson; n],
+        model: vec![ElasticModel::Corotated; n],
+        object: vec![0; n],
+    }
+}
+
+/// Sets velocity + spin x (x - centre) on every particle.
+pub(super) fn set_moving(particles: &mut Particles, centre_m: Vec3, velocity_m_s: Vec3, spin_rad_s: Vec3) {
+    for (v, x) in particles.velocity_m_s.iter_mut().zip(&particles.position_m) {
+        *v = velocity_m_s + spin_rad_s.cross(*x - centre_m);
+    }
+}
+
+/// Total momentum, kg m/s.
+pub(super) fn momentum(states: &[ParticleState]) -> DVec3 {
+    states.iter().map(|s| s.velocity_m_s.as_dvec3() * f64::from(s.mass_kg)).sum()
+}
+
+/// Centre of mass.
+pub(super) fn centre_m(states: &[ParticleState]) -> DVec3 {
+    let mass: f64 = states.iter().map(|s| f64::from(s.mass_kg)).sum();
+    states.iter().map(|s| s.position_m.as_dvec3() * f64::from(s.mass_kg)).sum::<DVec3>() / mass
+}
+
+/// Total angular momentum about a point, with what APIC keeps in the affine part: a quarter of the
+/// cell squared times the axial vector of mass C (Jiang et al. 2015, section 5.3.2).
+pub(super) fn angular_momentum(states: &[ParticleState], about_m: DVec3, cell_m: f32) -> DVec3 {
+    let quarter = 0.25 * f64::from(cell_m).powi(2);
+    let of = |s: &ParticleState| {
+        let a = s.affine.map(f64::from);
+        let axial = DVec3::new(a[7] - a[5], a[2] - a[6], a[3] - a[1]);
+        let arm = s.position_m.as_dvec3() - about_m;
+        arm.cross(s.velocity_m_s.as_dvec3()) * f64::from(s.mass_kg) + axial * quarter
+    };
+    states.iter().map(of).sum()
+}
+
+/// Mean of a quantity over the particles that a predicate picks, by their original index.
+pub(super) fn mean_of(solver: &Solver, picked: &[usize], of: impl Fn(&ParticleState) -> f64) -> Result<f64, SolverError> {
+    let states = solver.states()?;
+    Ok(picked.iter().map(|&i| of(&states[i])).sum::<f64>() / picked.len() as f64)
+}

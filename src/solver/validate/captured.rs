@@ -1,0 +1,98 @@
+//! What was captured standing still goes on standing still, and comes back to its shape.
+
+use super::Check;
+use super::bodies::block;
+use crate::Stop;
+use crate::gpu::Gpu;
+use crate::solver::core::Solver;
+use crate::solver::types::{Particles, Placement, Plane, Settings, SolverError};
+use glam::{Quat, Vec3};
+
+const CELL_M: f32 = 0.05;
+const SPACING_M: f32 = 0.025;
+/// Height of the body.
+const HEIGHT_M: f64 = 0.87;
+
+/// A pot on the ground that carries two stems which bend outwards and end in heads: the kin of a vase
+/// of flowers. Stems are two cells thick.
+pub(in crate::solver) fn stems(young_pa: f32) -> Particles {
+    let inside = |p: Vec3| {
+        let pot = p.z < 0.25 && p.truncate().length() < 0.16;
+        let arm = |side: f32| {
+            let t = (p.z - 0.2) / 0.6;
+            let axis = Vec3::new(side * (0.06 + 0.2 * t.max(0.0).powi(2)), 0.02 * side, p.z);
+            let stem = (0.0..1.0).contains(&t) && p.distance(axis) < 0.05;
+            stem || p.distance(Vec3::new(side * 0.26, 0.02 * side, 0.8)) < 0.07
+        };
+        pot || arm(1.0) || arm(-1.0)
+    };
+    let mut body = block(Vec3::new(-0.4, -0.2, 0.0), Vec3::new(0.8, 0.4, 0.9), SPACING_M, young_pa, 0.3);
+    body.position_m.retain(|&p| inside(p));
+    let n = body.position_m.len();
+    body.velocity_m_s.truncate(n);
+    body.volume_m3.truncate(n);
+    body.density_kg_m3.truncate(n);
+    body.young_pa.truncate(n);
+    body.poisson.truncate(n);
+    body.model.truncate(n);
+    body.object.truncate(n);
+    body
+}
+
+fn standing(gpu: &Gpu) -> Result<(Solver, Particles), SolverError> {
+    let particles = stems(2e6);
+    let mut settings = Settings::new(CELL_M);
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.15, restitution: 0.0 });
+    let mut solver = Solver::new(gpu, settings, &particles)?;
+    solver.prestress(&[0], &Stop::default(), &mut |_| {})?;
+    Ok((solver, particles))
+}
+
+/// Left alone for two seconds: how far the particle that moved most has moved.
+pub(super) fn left_alone(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let (mut solver, particles) = standing(gpu)?;
+    let mut farthest_m = 0.0;
+    for k in 1..=10 {
+        solver.advance(0.2 * f64::from(k), &Stop::default())?;
+        let moved = solver.states()?.iter().zip(&particles.position_m).map(|(s, p)| s.position_m.distance(*p)).fold(0.0, f32::max);
+        farthest_m = f64::max(farthest_m, f64::from(moved));
+    }
+    let check = Check::new("captured, left alone 2 s", "0, within 1 % of its height", "as captured, so at rest", "m");
+    Ok(vec![check.compare(0.0, farthest_m, 0.01 * HEIGHT_M)])
+}
+
+/// Dropped by 0.15 m: how far its heads swing against its pot, and how far off they are when all is
+/// quiet again.
+pub(super) fn dropped(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let (mut solver, particles) = standing(gpu)?;
+    let placement = Placement {
+        rotation: Quat::IDENTITY,
+        centre_m: Vec3::ZERO,
+        offset_m: Vec3::new(0.0, 0.0, 0.15),
+        velocity_m_s: Vec3::ZERO,
+        spin_rad_s: Vec3::ZERO,
+    };
+    solver.place(0, &placement)?;
+    let of = |at: &dyn Fn(usize) -> Vec3, keep: &dyn Fn(Vec3) -> bool| {
+        let picked: Vec<usize> = (0..particles.len()).filter(|&i| keep(particles.position_m[i])).collect();
+        picked.iter().map(|&i| at(i)).sum::<Vec3>() / picked.len() as f32
+    };
+    let pose = |at: &dyn Fn(usize) -> Vec3| of(at, &|p| p.z > 0.75 && p.x > 0.0) - of(at, &|p| p.z < 0.2);
+    let rest = pose(&|i| particles.position_m[i]);
+    let (mut swung_m, mut late) = (0f32, Vec::new());
+    for k in 1..=75 {
+        solver.advance(0.04 * f64::from(k), &Stop::default())?;
+        let states = solver.states()?;
+        let off = pose(&|i| states[i].position_m) - rest;
+        swung_m = swung_m.max(off.length());
+        if k > 50 {
+            late.push(off);
+        }
+    }
+    // The mean of the last second: what still trembles does not count.
+    let off_m = (late.iter().sum::<Vec3>() / late.len() as f32).length();
+    let swing = Check::new("dropped, bends", "over 1 cm", "elastic stems", "m");
+    let swing = Check { expected: 0.01, measured: f64::from(swung_m), tolerance: f64::INFINITY, held: swung_m > 0.01, ..swing };
+    let back = Check::new("dropped, comes back", "0, within 1 % of its height", "elastic stems", "m");
+    Ok(vec![swing, back.compare(0.0, f64::from(off_m), 0.01 * HEIGHT_M)])
+}

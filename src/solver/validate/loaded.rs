@@ -1,0 +1,127 @@
+//! Bodies under their own weight: V5 and V7.
+
+use super::Check;
+use super::bodies::{block, mean_of};
+use crate::Stop;
+use crate::gpu::Gpu;
+use crate::solver::core::Solver;
+use crate::solver::types::{Particles, PinRegion, Settings, SolverError};
+use crate::spec::{ColliderShape, PlaneShape};
+use glam::Vec3;
+use serde::Serialize;
+
+const CELL_M: f32 = 0.05;
+const SPACING_M: f32 = 0.025;
+const DENSITY_KG_M3: f64 = 1000.0;
+const GRAVITY_M_S2: f64 = 9.81;
+
+/// Where the clamps end: between two nodes, the farther of which is the last that they hold.
+const CLAMP_M: f32 = 0.5 * CELL_M;
+
+/// Holds the body behind a plane at `CLAMP_M` along a normal.
+fn clamp(particles: &Particles, normal: Vec3) -> PinRegion {
+    let (low_m, high_m) = particles.position_m.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+    let plane = PlaneShape { point_m: (normal * CLAMP_M).as_dvec3().into(), normal: normal.as_dvec3().into() };
+    PinRegion { shape: ColliderShape::Plane(plane), low_m, high_m, from_s: 0.0, to_s: f64::INFINITY }
+}
+
+/// Mean of a displacement over `span_s`, in `samples` steps. A load put on at once makes a body swing
+/// about where it would hang: its mean over whole periods is the static one.
+fn mean_over(
+    solver: &mut Solver,
+    span_s: f64,
+    samples: u32,
+    mut of: impl FnMut(&Solver) -> Result<Vec<f64>, SolverError>,
+) -> Result<Vec<f64>, SolverError> {
+    let mut sums: Vec<f64> = Vec::new();
+    for k in 1..=samples {
+        solver.advance(span_s * f64::from(k) / f64::from(samples), &Stop::default())?;
+        let values = of(solver)?;
+        sums.resize(values.len(), 0.0);
+        sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value / f64::from(samples));
+    }
+    Ok(sums)
+}
+
+/// Length, height and width of the cantilever, and its modulus; nu = 0.
+const BEAM: (f64, f64, f64, f64) = (1.2, 0.2, 0.05, 3e7);
+
+/// Deflection of a cantilever under its weight at one place.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BeamPoint {
+    /// From the clamp.
+    pub x_m: f64,
+    /// By the solver, downwards.
+    pub measured_m: f64,
+    /// By Timoshenko's beam.
+    pub expected_m: f64,
+}
+
+/// Timoshenko: w q/(24 E I) (6 L^2 - 4 L x + x^2) x^2 for bending, and q / (k G A) (L x - x^2/2) for
+/// shear with k = 5/6.
+fn timoshenko_m(x: f64) -> f64 {
+    let (l, h, b, e) = BEAM;
+    let (area, inertia, shear) = (h * b, b * h.powi(3) / 12.0, 0.5 * e);
+    let q = DENSITY_KG_M3 * GRAVITY_M_S2 * area;
+    q * x * x * (6.0 * l * l - 4.0 * l * x + x * x) / (24.0 * e * inertia) + q * (l * x - 0.5 * x * x) / (5.0 / 6.0 * shear * area)
+}
+
+/// Deflection along a cantilever of four cells' height, from clamp to tip.
+pub fn cantilever_curve(gpu: &Gpu) -> Result<Vec<BeamPoint>, SolverError> {
+    let (l, h, b, e) = BEAM;
+    // The clamp holds two more cells of the beam.
+    let held_m = 2.0 * CELL_M;
+    let low = Vec3::new(CLAMP_M - held_m, -0.5 * b as f32, -0.5 * h as f32);
+    let particles = block(low, Vec3::new(l as f32 + held_m, b as f32, h as f32), SPACING_M, e as f32, 0.0);
+    let mut settings = Settings::new(CELL_M);
+    settings.pins.push(clamp(&particles, Vec3::X));
+    let mut solver = Solver::new(gpu, settings, &particles)?;
+    // First mode of an Euler-Bernoulli cantilever, slowed by shear by a few per cent: second order here.
+    let frequency_hz = 1.8751f64.powi(2) / std::f64::consts::TAU * (e * h * h / 12.0 / DENSITY_KG_M3).sqrt() / (l * l);
+    let columns: Vec<f32> = (0..).map(|k| (k as f32 + 0.5) * SPACING_M).take_while(|&x| x < l as f32).collect();
+    let of_column = |x: f32| (0..particles.len()).filter(|&i| (particles.position_m[i].x - CLAMP_M - x).abs() < 0.1 * SPACING_M).collect::<Vec<_>>();
+    let picked: Vec<_> = columns.iter().map(|&x| of_column(x)).collect();
+    let measured = mean_over(&mut solver, 1.0 / frequency_hz, 40, |solver| {
+        let states = solver.states()?;
+        let fallen = |i: &usize| f64::from(particles.position_m[*i].z - states[*i].position_m.z);
+        Ok(picked.iter().map(|column| column.iter().map(fallen).sum::<f64>() / column.len() as f64).collect())
+    })?;
+    let point = |(&x, &measured_m): (&f32, &f64)| BeamPoint { x_m: f64::from(x), measured_m, expected_m: timoshenko_m(f64::from(x)) };
+    Ok(columns.iter().zip(&measured).map(point).collect())
+}
+
+/// V5: the tip of a cantilever.
+pub(super) fn cantilever(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let curve = cantilever_curve(gpu)?;
+    let check = Check::new("V5 cantilever tip", "q L^4 / (8 E I) + q L^2 / (2 k G A)", "Timoshenko, k = 5/6", "m");
+    Ok(curve.last().map(|tip| check.compare(tip.expected_m, tip.measured_m, 0.05)).into_iter().collect())
+}
+
+/// V7: how a column that stands under its own weight, free sideways with nu = 0, shortens between two
+/// heights. The lower one is clear of the clamp, whose edge is as wide as a cell.
+pub(super) fn column(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let (height_m, young_pa) = (0.8f64, 5e5f64);
+    let held_m = 2.0 * CELL_M;
+    let size = Vec3::new(0.1, 0.1, height_m as f32 + held_m);
+    let particles = block(Vec3::new(-0.05, -0.05, CLAMP_M - held_m), size, SPACING_M, young_pa as f32, 0.0);
+    let mut settings = Settings::new(CELL_M);
+    settings.pins.push(clamp(&particles, Vec3::Z));
+    let mut solver = Solver::new(gpu, settings, &particles)?;
+    let layer = |height: f64| {
+        let z = CLAMP_M + height as f32;
+        (0..particles.len()).filter(|&i| (particles.position_m[i].z - z).abs() < 0.1 * SPACING_M).collect::<Vec<_>>()
+    };
+    let half = 0.5 * f64::from(SPACING_M);
+    let (low, high) = (4.0 * f64::from(SPACING_M) + half, height_m - half);
+    let (bottom, top) = (layer(low), layer(high));
+    let length = |solver: &Solver| {
+        let z = |layer: &[usize]| mean_of(solver, layer, |s| f64::from(s.position_m.z));
+        Ok::<f64, SolverError>(z(&top)? - z(&bottom)?)
+    };
+    let start = length(&solver)?;
+    let period_s = 4.0 * height_m / (young_pa / DENSITY_KG_M3).sqrt();
+    let shorter = mean_over(&mut solver, 2.0 * period_s, 48, |solver| Ok(vec![start - length(solver)?]))?;
+    let sunk = |z: f64| DENSITY_KG_M3 * GRAVITY_M_S2 * (height_m * z - 0.5 * z * z) / young_pa;
+    let check = Check::new("V7 column under its weight", "rho g (H z - z^2 / 2) / E between two heights", "bar under its own weight", "m");
+    Ok(vec![check.compare(sunk(high) - sunk(low), shorter[0], 0.03)])
+}

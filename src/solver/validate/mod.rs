@@ -1,0 +1,80 @@
+//! The solver against formulas: each case runs a small scene on the device and compares a number.
+
+mod bodies;
+mod captured;
+mod free;
+mod loaded;
+mod repeat;
+
+pub use loaded::{BeamPoint, cantilever_curve};
+
+#[cfg(test)]
+pub(super) use bodies::block;
+#[cfg(test)]
+pub(super) use captured::stems;
+
+use super::types::SolverError;
+use crate::gpu::Gpu;
+use serde::Serialize;
+
+/// One comparison.
+#[derive(Clone, Debug, Serialize)]
+pub struct Check {
+    /// Short and stable: `V5 cantilever tip`.
+    pub name: &'static str,
+    /// What is expected, as a formula.
+    pub formula: &'static str,
+    /// Where the formula comes from.
+    pub source: &'static str,
+    /// Its value.
+    pub expected: f64,
+    /// What the solver gave.
+    pub measured: f64,
+    /// How far apart they may be, as a share of `expected`, or in `unit` where that is 0.
+    pub tolerance: f64,
+    /// Of both values.
+    pub unit: &'static str,
+    /// Whether they agree.
+    pub held: bool,
+}
+
+impl Check {
+    fn new(name: &'static str, formula: &'static str, source: &'static str, unit: &'static str) -> Check {
+        Check { name, formula, source, expected: 0.0, measured: f64::NAN, tolerance: 0.0, unit, held: false }
+    }
+
+    /// Compares; a number that is none never holds.
+    fn compare(self, expected: f64, measured: f64, tolerance: f64) -> Check {
+        let scale = if expected == 0.0 { 1.0 } else { expected.abs() };
+        Check { expected, measured, tolerance, held: (measured - expected).abs() <= tolerance * scale, ..self }
+    }
+}
+
+/// A case: its name, and what runs it.
+pub struct Case {
+    /// Names of its checks begin with this.
+    pub name: &'static str,
+    /// Seconds to minutes on a software adapter where false.
+    pub quick: bool,
+    run: fn(&Gpu) -> Result<Vec<Check>, SolverError>,
+}
+
+impl Case {
+    /// Runs it.
+    pub fn run(&self, gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+        (self.run)(gpu)
+    }
+}
+
+/// Every case, in order.
+pub const CASES: [Case; 9] = [
+    Case { name: "V1", quick: true, run: free::fall },
+    Case { name: "V2", quick: true, run: free::momentum },
+    Case { name: "V3", quick: true, run: free::angular_momentum },
+    Case { name: "V4", quick: true, run: free::spinning_rod },
+    Case { name: "V5", quick: false, run: loaded::cantilever },
+    Case { name: "V7", quick: true, run: loaded::column },
+    Case { name: "V26", quick: true, run: repeat::same_bits },
+    Case { name: "left alone", quick: false, run: captured::left_alone },
+    Case { name: "dropped", quick: false, run: captured::dropped },
+];
