@@ -43,6 +43,8 @@ const VECTORS: usize = 5;
 const SETTLED: f32 = 1e-3;
 /// The search is over when a whole system gains less than this share: strains squared are accounted for.
 const CONVERGED: f32 = 1e-3;
+/// Share of an object's height, from its lowest point, that counts as the base it stands on.
+const BASE_SHARE: f32 = 0.03;
 /// A particle is not started with less of its volume than this.
 const LEAST_VOLUME: f32 = 0.3;
 /// Nor with a larger entry of F - I.
@@ -141,8 +143,11 @@ impl Solver {
             }
             supported.push(object);
             let most_m = (REST_CELLS * cell_m).max(lowest_m + 0.01 * cell_m);
+            // A captured base is never quite flat: all of it stands, not its lowest grain alone.
+            let base_m = most_m.max((BASE_SHARE * height_m(states, object)).min(REST_CELLS_MAX * cell_m));
             for state in states.iter_mut().filter(|s| s.object() == object) {
-                state.rest_m = distance_m(&colliders, state.position_m).clamp(-2.0 * REST_CELLS * cell_m, most_m);
+                let distance_m = distance_m(&colliders, state.position_m);
+                state.rest_m = if distance_m <= base_m { distance_m } else { most_m }.max(-2.0 * REST_CELLS * cell_m);
             }
         }
         supported
@@ -342,4 +347,11 @@ fn job(job: u32, index: u32) -> Substep {
 /// start free of stress.
 fn can_carry(f: glam::Mat3) -> bool {
     f.is_finite() && f.determinant() > LEAST_VOLUME && (f - glam::Mat3::IDENTITY).abs_diff_eq(glam::Mat3::ZERO, MOST_STRAIN)
+}
+
+/// Extent of an object along z.
+fn height_m(states: &[ParticleState], object: u32) -> f32 {
+    let heights = states.iter().filter(|s| s.object() == object).map(|s| s.position_m.z);
+    let (low, high) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
+    (high - low).max(0.0)
 }
