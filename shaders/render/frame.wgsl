@@ -28,6 +28,7 @@ struct Frame {
     id_at: u32,
     ground_m: f32,               // world height of the plain ground
     pad: u32,
+    pool: vec4<f32>,              // world x, y and radius of the tone under the object; radius 0: none
 }
 
 // The bins that one Gaussian touches.

@@ -1,5 +1,6 @@
 // The factor of the plain ground behind each pixel: where the pixel's ray meets the plane, the contact
-// shadow at that place; above the horizon and far from the object, 1.
+// shadow at that place on a floor a shade darker than the background, which it fades into; above the
+// horizon, 1.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<storage, read> ground_map: array<f32>;
@@ -19,7 +20,15 @@ fn main(
     var factor = 1.0;
     // Seen from above only; a level ray has no reach and fails both.
     if (reach > 0.0 && reach < FAR && frame.eye.z > frame.ground_m) {
-        factor = ground_shade(frame.eye.xy + reach * ray.xy);
+        let p = frame.eye.xy + reach * ray.xy;
+        factor = ground_shade(p) * floor_tone(p);
     }
     backdrop[i] = factor;
+}
+
+// A pool of tone under the object: the eye reads it as a floor, and it has no edge.
+fn floor_tone(p: vec2<f32>) -> f32 {
+    if (frame.pool.z <= 0.0) { return 1.0; }
+    let d = length(p - frame.pool.xy) / frame.pool.z;
+    return 1.0 - POOL_TONE * exp(-d * d);
 }

@@ -1,6 +1,6 @@
 //! The renderer's passes: their text, what they bind, their compiled form.
 
-use super::profile::{CORRELATION_MAX, DEPTH_BITS, EXPONENT_SLACK, FAR, OPACITY_MAX, REACH_SLACK, VARIANCE_MAX};
+use super::profile::{CORRELATION_MAX, DEPTH_BITS, EXPONENT_SLACK, FAR, OPACITY_MAX, POOL_TONE, REACH_SLACK, VARIANCE_MAX};
 use super::shadow;
 use crate::gpu::{Access, Constant, ExtentPass, Gpu, Kernel, KernelSource, RadixSort, Scan, THREADS, Tier};
 use std::sync::OnceLock;
@@ -88,6 +88,7 @@ fn source(label: &'static str, parts: &[(&'static str, &'static str)], bindings:
     let mut constants = shared_constants();
     constants.extend([
         ("FAR", Constant::F32(FAR)),
+        ("POOL_TONE", Constant::F32(POOL_TONE)),
         ("VARIANCE_MAX", Constant::F32(VARIANCE_MAX)),
         ("CORRELATION_MAX", Constant::F32(CORRELATION_MAX)),
         ("OPACITY_MAX", Constant::F32(OPACITY_MAX)),

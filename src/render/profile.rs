@@ -86,3 +86,5 @@ pub const DEPTH_BITS: u32 = 24;
 
 /// Side of the tiles that the Inria profile fills whole, pixels.
 pub const INRIA_TILE: u32 = 16;
+/// How much darker the plain ground is under the object than the background.
+pub const POOL_TONE: f32 = 0.16;

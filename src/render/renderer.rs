@@ -39,6 +39,8 @@ pub struct GroundLook {
     pub height_m: f32,
     /// The factors on its colour, as [`super::shadow`] keeps them; without them it is not seen.
     pub shadow: Option<wgpu::Buffer>,
+    /// World x, y and radius of a pool of darker tone that makes the plane read as a floor; radius 0 for none.
+    pub pool_m: [f32; 3],
 }
 
 /// Draws frames on one device. Frames in flight each have buffers of their own, used again once

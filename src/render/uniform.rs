@@ -35,6 +35,7 @@ pub(super) struct Uniform {
     pub id_at: u32,
     pub ground_m: f32,
     pub pad: u32,
+    pub pool: [f32; 4],
 }
 
 /// Which planes a picture has, and where in its words.
@@ -102,6 +103,7 @@ impl Uniform {
             id_at: word(planes.id, id_at),
             ground_m: options.ground.as_ref().map_or(0.0, |ground| ground.height_m),
             pad: 0,
+            pool: options.ground.as_ref().map_or([0.0; 4], |ground| [ground.pool_m[0], ground.pool_m[1], ground.pool_m[2], 0.0]),
         }
     }
 

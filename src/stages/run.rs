@@ -37,6 +37,7 @@ pub(super) fn run(
     let ready = engine.ready(spec, base, options)?;
     seconds.insert(StageName::Scene, clock.elapsed().as_secs_f64());
     let mut plan = engine.plan_of(&ready, spec, options, previous);
+    engine.memory.told();
     let clock = Instant::now();
     let solids = engine.solids(spec, &ready)?;
     seconds.insert(StageName::Proxy, clock.elapsed().as_secs_f64());

@@ -21,9 +21,19 @@ pub const BUILTIN_DEMO: &str = "builtin:demo";
 #[derive(Debug, Default)]
 pub(super) struct Memory {
     file: Option<(String, Arc<Loaded>)>,
-    scene: Option<(String, Arc<Prepared>)>,
+    /// With what was done for it, which a plan tells until a run has told it.
+    scene: Option<(String, Made<Prepared>)>,
     solids: Option<(String, Arc<Vec<Solid>>)>,
     bound: Option<(String, Arc<Bound>)>,
+}
+
+impl Memory {
+    /// A run has told what was done: from now on it is there.
+    pub fn told(&mut self) {
+        if let Some((_, made)) = &mut self.scene {
+            made.action = Action::Hit;
+        }
+    }
 }
 
 /// A stage's result and how it was had.
@@ -87,10 +97,10 @@ pub(super) fn scene(memory: &mut Memory, store: &Store, spec: &Spec, base: &Path
         return Err(EngineError::SceneChanged { file, found, recorded });
     }
     let key = keys::scene(spec, &loaded.blake3);
-    if let Some((known, prepared)) = &memory.scene
+    if let Some((known, made)) = &memory.scene
         && *known == key
     {
-        return Ok((key, Made { value: prepared.clone(), action: Action::Hit }));
+        return Ok((key, made.clone()));
     }
     let kept = pack::find(store, "scene", &key)?.and_then(|entry| Some((axis(entry.meta().get("up")?)?, pack::read::<u8>(&entry, "floater").ok()??)));
     let (action, pruned) = match kept {
@@ -103,8 +113,9 @@ pub(super) fn scene(memory: &mut Memory, store: &Store, spec: &Spec, base: &Path
         pack::write(&entry, "floater", &pruned.1)?;
         entry.finish(json!({ "up": pruned.0, "gaussians": loaded.gaussians.len() }))?;
     }
-    memory.scene = Some((key.clone(), prepared.clone()));
-    Ok((key, Made { value: prepared, action }))
+    let made = Made { value: prepared, action };
+    memory.scene = Some((key.clone(), made.clone()));
+    Ok((key, made))
 }
 
 fn axis(value: &Value) -> Option<Axis> {

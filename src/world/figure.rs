@@ -8,6 +8,9 @@ use crate::skin::{Bound, Skinner, Splats};
 use crate::spec::{Camera, Weights};
 use glam::Vec3;
 
+/// Radius of the tone under objects over their largest extent.
+const POOL_SHARE: f32 = 1.6;
+
 /// A scene that can be posed by one frame of motion and drawn.
 #[derive(Debug)]
 pub struct Figure {
@@ -19,6 +22,7 @@ pub struct Figure {
     /// Motion of a frame that comes from the store.
     replayed: wgpu::Buffer,
     ground_m: f32,
+    pool_m: [f32; 3],
     has_static: bool,
 }
 
@@ -43,6 +47,7 @@ impl Figure {
             renderer: Renderer::new(gpu),
             replayed: gpu.storage::<[u32; 8]>("figure.replayed", rest_m.len())?,
             ground_m: prepared.ground_m as f32,
+            pool_m: pool(prepared),
             has_static,
             gpu: gpu.clone(),
             splats,
@@ -70,7 +75,21 @@ impl Figure {
         let point = |p: [f64; 3]| Vec3::from(p.map(|v| v as f32));
         let view = View::look_at(point(now.eye_m), point(now.target_m), now.fov_deg as f32, size).with_background(background);
         // Static Gaussians are a ground of their own; a cut-out gets a plain one.
-        let ground = (!self.has_static).then_some(GroundLook { height_m: self.ground_m, shadow: None });
+        let shadow = Some(self.shadow.ground_map().clone());
+        let ground = (!self.has_static).then_some(GroundLook { height_m: self.ground_m, shadow, pool_m: self.pool_m });
         self.renderer.draw(&self.splats, &view, &RenderOptions { ground, ..RenderOptions::default() })
     }
+}
+
+/// Centre and radius of the tone on a plain ground: wide enough for all objects as captured, and it
+/// stays there when they move.
+fn pool(prepared: &Prepared) -> [f32; 3] {
+    let owned = prepared.gaussians.mean.iter().zip(prepared.object_of.iter().zip(&prepared.floater));
+    let points = owned.filter(|(_, (object, floater))| **object != u32::MAX && !**floater).map(|(mean, _)| *mean);
+    let (low, high) = points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    if !low.is_finite() || !high.is_finite() {
+        return [0.0; 3];
+    }
+    let middle = (low + high) / 2.0;
+    [middle.x, middle.y, POOL_SHARE * (high - low).max_element()]
 }

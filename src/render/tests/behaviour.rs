@@ -199,7 +199,7 @@ fn the_plain_ground_darkens_under_what_stands_on_it_and_nowhere_else() {
     shadow.record(&mut recording);
     gpu.submit(&recording);
     let draw = |shadow: Option<wgpu::Buffer>, tier, bin| {
-        let options = RenderOptions { ground: Some(GroundLook { height_m: 0.0, shadow }), ..RenderOptions::default() };
+        let options = RenderOptions { ground: Some(GroundLook { height_m: 0.0, shadow, pool_m: [0.0; 3] }), ..RenderOptions::default() };
         Renderer::with_form(&gpu, tier, bin).draw(&splats, &view, &options).unwrap().read(&gpu).unwrap().rgba8
     };
     let plain = draw(None, Tier::Cpu, 16);
@@ -212,8 +212,10 @@ fn the_plain_ground_darkens_under_what_stands_on_it_and_nowhere_else() {
         assert!(red(&shaded, x, y) + 8 < red(&plain, x, y), "{} against {} at {x}, {y}", red(&shaded, x, y), red(&plain, x, y));
         assert!(shaded.iter().zip(&plain).all(|(s, p)| s <= p), "never brighter");
         let below = View::look_at(Vec3::new(0.0, -2.5, -0.5), Vec3::ZERO, 40.0, [96, 72]).with_background([0.9; 3]);
-        let options =
-            RenderOptions { ground: Some(GroundLook { height_m: 0.0, shadow: Some(shadow.ground_map().clone()) }), ..RenderOptions::default() };
+        let options = RenderOptions {
+            ground: Some(GroundLook { height_m: 0.0, shadow: Some(shadow.ground_map().clone()), pool_m: [0.0; 3] }),
+            ..RenderOptions::default()
+        };
         let from_below = Renderer::with_form(&gpu, tier, bin).draw(&splats, &below, &options).unwrap().read(&gpu).unwrap();
         assert_eq!(from_below.rgba8[..4], [230, 230, 230, 255], "the ground is seen from above only");
     }
