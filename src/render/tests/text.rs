@@ -31,7 +31,7 @@ fn the_frame_is_laid_out_as_in_the_shader() {
     macro_rules! same { ($($field:ident)*) => { $(assert_eq!(at(stringify!($field)), offset_of!(Uniform, $field));)* } }
     same!(camera eye near focal centre tangent_low tangent_high background dilation size bins bin_shift count sh_degree capacity
         compensation_floor opacity_cap sigmas stop alpha_min_log2 alpha_min shaded colour_at depth_at id_at ground_m pad pool);
-    assert_eq!(members.len(), 27, "no member without a field");
+    assert_eq!(members.len(), 28, "no member without a field");
 }
 
 #[test]
