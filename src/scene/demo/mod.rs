@@ -14,7 +14,7 @@ mod table;
 mod vase;
 
 use super::Gaussians;
-use crate::spec::{Auto, Axis, BoxShape, Camera, Collider, ColliderShape, Ground, Object, Scene, Select, Spec, World};
+use crate::spec::{Auto, Axis, BoxShape, Collider, ColliderShape, Ground, Object, Scene, Select, Spec, World};
 use glam::Vec3;
 use shade::{Boxes, Fog};
 
@@ -60,7 +60,8 @@ pub fn spec() -> Spec {
         forces: Vec::new(),
         events: Vec::new(),
         skin: Default::default(),
-        camera: Auto::Value(Camera { eye_m: [-1.93, -1.08, 1.14], target_m: [0.0, 0.0, 0.6], fov_deg: 34.0, orbit_deg_s: 0.0 }),
+        // Frames the vase's predicted path, and again where a later turn leaves the picture.
+        camera: Auto::Auto,
         output: Default::default(),
         expectations: Vec::new(),
     }
