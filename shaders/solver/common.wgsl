@@ -30,6 +30,8 @@ struct Params {
     seed: u32,
     // Smallest measure of momentum that the fixed-point scale is made for, kg m/s.
     momentum_floor: f32,
+    // Bits of the largest measure of momentum in fixed point.
+    momentum_bits: u32,
 }
 
 // Offset in nodes of one axis' coordinate within the block-linear storage; the three axes add up.

@@ -27,8 +27,8 @@ struct Control {
     final_speed: atomic<u32>,
 }
 
-// Power of two that brings momenta up to `largest` to 24 bits, so that 64 of them still fit 31.
+// Power of two that brings momenta up to `largest` to `momentum_bits`.
 fn momentum_units(largest: f32) -> f32 {
     let exponent = (bitcast<u32>(max(largest, params.momentum_floor)) >> 23u) + 1u;
-    return bitcast<f32>((254u + 24u - min(exponent, 254u)) << 23u);
+    return bitcast<f32>((254u + params.momentum_bits - min(exponent, 254u)) << 23u);
 }

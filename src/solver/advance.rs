@@ -1,6 +1,6 @@
 //! Going on in time: segments of whole substeps, watched, rolled back and run again.
 
-use super::constants::SLACK_CELLS;
+use super::constants::{FIXED_BITS_RETREAT, SLACK_CELLS};
 use super::core::Solver;
 use super::grid::GridBuffers;
 use super::obstacles;
@@ -68,7 +68,11 @@ impl Solver {
     pub fn advance(&mut self, to_s: f64, stop: &Stop) -> Result<Advance, SolverError> {
         let mut report = Advance { dt_min_s: f64::INFINITY, ..Default::default() };
         while self.time_s < to_s - SAME_TIME_S && !report.stopped {
-            self.segment(to_s, stop, &mut report)?;
+            let scales = (self.params.mass_units, self.params.momentum_bits);
+            let result = self.segment(to_s, stop, &mut report);
+            // Wider sums were for that segment alone: what comes later starts as from a checkpoint.
+            (self.params.mass_units, self.params.momentum_bits) = scales;
+            result?;
         }
         if report.substeps == 0 {
             report.dt_min_s = 0.0;
@@ -113,6 +117,10 @@ impl Solver {
             report.retries += 1;
             if now.window {
                 room *= 2;
+            }
+            if now.overflow {
+                self.params.momentum_bits -= FIXED_BITS_RETREAT;
+                self.params.mass_units *= 0.5f32.powi(FIXED_BITS_RETREAT as i32);
             }
             if halvings < HALVINGS {
                 halvings += 1;

@@ -33,12 +33,16 @@ pub const REST_CELLS: f32 = 0.25;
 pub const REST_CELLS_MAX: f32 = 1.0;
 /// A contribution or sum in fixed point beyond this trips the watch.
 pub const SUM_LIMIT: f32 = 536_870_912.0;
-/// Bits of the mass of the heaviest particle in fixed point.
-pub const MASS_BITS: i32 = 23;
+/// Bits of the heaviest particle's mass, and of the largest momentum that a particle hands on, in the
+/// fixed point of the grid: 32 of them fit a node, four times what a body at rest brings together.
+pub const FIXED_BITS: u32 = 26;
+/// Bits given up at each retry after a node held more.
+pub const FIXED_BITS_RETREAT: u32 = 2;
 /// Cells that a particle may travel between two sorts.
 pub const SLACK_CELLS: i32 = 1;
-/// A node whose nearest particle is within this of its rest offset stands on its support, in cells.
-pub const TOUCHING_CELLS: f32 = 0.02;
+/// A node whose nearest particle is within this of its rest offset stands on its support, in cells. No
+/// more than the rounding of marks: what is a hair above it would fall by that hair.
+pub const TOUCHING_CELLS: f32 = 1e-4;
 /// A node that pulls at its support by more than this share of its weight lets go.
 pub const RELEASE: f32 = 0.02;
 /// Rounds, and the share of each step, of the search for the stretch that carries a stress. A share
@@ -48,7 +52,7 @@ pub const CARRY_STEPS: u32 = 32;
 pub const CARRY_SHARE: f32 = 0.6;
 /// Pseudo mass, in fixed-point units, below which a node of the prestress counts as this heavy: a
 /// thousandth of the heaviest particle's.
-pub const LIGHTEST: f32 = 8192.0;
+pub const LIGHTEST: f32 = 65_536.0;
 
 /// All of them as WGSL constants.
 pub fn all() -> Vec<(&'static str, Constant)> {

@@ -1,6 +1,6 @@
 //! The solver itself: its particles, its surroundings, and what may be done to them between frames.
 
-use super::constants::{MASS_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
+use super::constants::{FIXED_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
 use super::grid::{GridBuffers, Window, allowed_blocks};
 use super::obstacles::{self, PinRecord};
 use super::passes::Passes;
@@ -30,6 +30,8 @@ pub(super) struct Params {
     pub slack: i32,
     pub seed: u32,
     pub momentum_floor: f32,
+    pub momentum_bits: u32,
+    pub padding: [u32; 3],
 }
 
 #[repr(C)]
@@ -87,7 +89,8 @@ impl Solver {
             gravity_m_s2: settings.gravity_m_s2.into(),
             cell_m: settings.cell_m,
             per_m: 1.0 / settings.cell_m,
-            mass_units: 2f32.powi(MASS_BITS - heaviest_kg.log2().ceil() as i32),
+            mass_units: 2f32.powi(FIXED_BITS as i32 - heaviest_kg.log2().ceil() as i32),
+            momentum_bits: FIXED_BITS,
             reach_m: REACH_CELLS * settings.cell_m,
             has_ground: u32::from(settings.ground.is_some()),
             slack: SLACK_CELLS,
