@@ -23,7 +23,6 @@ pub struct Figure {
     replayed: wgpu::Buffer,
     ground_m: f32,
     pool_m: [f32; 3],
-    has_static: bool,
 }
 
 impl Figure {
@@ -40,15 +39,15 @@ impl Figure {
             }
         }
         let has_static = !receivers.is_empty();
-        let shadow = Shadow::new(gpu, &splats, &casters, &receivers, (!has_static).then_some(prepared.ground_m as f32))?;
+        let shadow = Shadow::new(gpu, &splats, &casters, &receivers, Some(prepared.ground_m as f32))?;
         Ok(Figure {
             skinner,
             shadow,
             renderer: Renderer::new(gpu),
             replayed: gpu.storage::<[u32; 8]>("figure.replayed", rest_m.len())?,
             ground_m: prepared.ground_m as f32,
-            pool_m: pool(prepared),
-            has_static,
+            // Static Gaussians show their own floor; a cut-out gets a tone to stand on.
+            pool_m: if has_static { [0.0; 3] } else { pool(prepared) },
             gpu: gpu.clone(),
             splats,
         })
@@ -74,9 +73,9 @@ impl Figure {
         let now = camera::orbited(camera, time_s);
         let point = |p: [f64; 3]| Vec3::from(p.map(|v| v as f32));
         let view = View::look_at(point(now.eye_m), point(now.target_m), now.fov_deg as f32, size).with_background(background);
-        // Static Gaussians are a ground of their own; a cut-out gets a plain one.
+        // Where nothing was captured, the plain ground shows the shadow.
         let shadow = Some(self.shadow.ground_map().clone());
-        let ground = (!self.has_static).then_some(GroundLook { height_m: self.ground_m, shadow, pool_m: self.pool_m });
+        let ground = Some(GroundLook { height_m: self.ground_m, shadow, pool_m: self.pool_m });
         self.renderer.draw(&self.splats, &view, &RenderOptions { ground, ..RenderOptions::default() })
     }
 }
