@@ -367,6 +367,6 @@ pub(super) struct Bound {
     order: wgpu::BindGroup,
     pub stress: wgpu::BindGroup,
     pub p2g: wgpu::BindGroup,
-    grid: wgpu::BindGroup,
-    g2p: wgpu::BindGroup,
+    pub grid: wgpu::BindGroup,
+    pub g2p: wgpu::BindGroup,
 }

@@ -15,7 +15,7 @@ pub const POLAR_STEPS: u32 = 5;
 /// det F below which the polar decomposition takes the form that survives inversion.
 pub const FLAT: f32 = 0.1;
 /// Turns of that form.
-pub const FLAT_STEPS: u32 = 16;
+pub const FLAT_STEPS: u32 = 48;
 /// Neo-Hookean ln J goes no lower than ln of this.
 pub const J_FLOOR: f32 = 0.05;
 /// A particle below or above these det F makes its object suspect when a segment fails.

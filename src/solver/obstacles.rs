@@ -90,6 +90,20 @@ impl ColliderRecord {
             }
         }
     }
+
+    /// Outward normal of a face, for a point beside it.
+    #[cfg(test)]
+    pub fn normal(&self, face: u32, x: Vec3) -> Vec3 {
+        match self.at[3] as u32 {
+            0 => Vec3::from_slice(&self.shape),
+            2 => (x - Vec3::from_slice(&self.at)).normalize_or(Vec3::Z),
+            _ => {
+                let mut normal = Vec3::ZERO;
+                normal[(face & 3) as usize] = if face >= 4 { -1.0 } else { 1.0 };
+                normal
+            }
+        }
+    }
 }
 
 /// Distance to the nearest surface, infinite where there is none.

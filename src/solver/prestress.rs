@@ -8,7 +8,7 @@
 //! relaxation in time would have to wait for.
 
 use super::advance::{Bound, Substep};
-use super::constants::{REST_CELLS, REST_CELLS_MAX, SLACK_CELLS};
+use super::constants::{FIXED_BITS, REST_CELLS, REST_CELLS_MAX, SLACK_CELLS};
 use super::core::Solver;
 use super::grid::GridBuffers;
 use super::obstacles::{self, distance_m};
@@ -69,6 +69,17 @@ struct Groups {
     product: wgpu::BindGroup,
     control: wgpu::BindGroup,
     update: wgpu::BindGroup,
+}
+
+/// What the twin compares.
+#[cfg(test)]
+pub(super) struct Rounds {
+    /// Particles as the search sees them.
+    pub pseudo: Vec<ParticleState>,
+    /// Displacement of each node of the window.
+    pub displacements: Vec<[f32; 4]>,
+    /// Particles under the stress that the displacements bring.
+    pub adopted: Vec<ParticleState>,
 }
 
 /// What a search works on.
@@ -164,12 +175,7 @@ impl Solver {
         progress: &mut dyn FnMut(f32),
         report: &mut PrestressReport,
     ) -> Result<Vec<ParticleState>, SolverError> {
-        let pseudo = self.pseudo_particles(states, objects);
-        let heaviest = pseudo.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
-        self.params.mass_units = 2f32.powi(super::constants::FIXED_BITS as i32 - heaviest.log2().ceil() as i32);
-        self.params.momentum_floor = heaviest * 1e-12;
-        self.buffers[self.current].upload(&self.gpu, &pseudo);
-        let mut scene = self.set_up(stop)?;
+        let mut scene = self.begin(&self.pseudo_particles(states, objects), stop)?;
         report.residual = residual(&self.first_system(&mut scene)?);
         let mut gained = 0.0;
         report.converged = false;
@@ -208,6 +214,34 @@ impl Solver {
             }
         }
         pseudo
+    }
+
+    /// Uploads pseudo particles, and the scales that suit their masses and their small displacements.
+    fn begin<'a>(&mut self, pseudo: &[ParticleState], stop: &'a Stop) -> Result<Scene<'a>, SolverError> {
+        let heaviest = pseudo.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
+        self.params.mass_units = 2f32.powi(FIXED_BITS as i32 - heaviest.log2().ceil() as i32);
+        self.params.momentum_floor = heaviest * 1e-12;
+        self.buffers[self.current].upload(&self.gpu, pseudo);
+        self.set_up(stop)
+    }
+
+    /// For the twin: some rounds of the first system, taken over.
+    #[cfg(test)]
+    pub(super) fn search_rounds(&mut self, states: &[ParticleState], rounds: u32) -> Result<Rounds, SolverError> {
+        let (pseudo, stop) = (self.pseudo_particles(states, &[0]), Stop::default());
+        let mut scene = self.begin(&pseudo, &stop)?;
+        self.first_system(&mut scene)?;
+        let mut recording = Recording::default();
+        for _ in 0..rounds {
+            self.record_round(&mut scene, &mut recording);
+        }
+        let hand_out = job(ADOPT, scene.round);
+        recording.indirect_with(&self.passes.prestress_update, &scene.groups.update, &hand_out, &scene.grid.active_groups, 0);
+        self.gpu.submit(&recording);
+        let nodes = self.params.blocks.iter().product::<u32>() as usize * 64;
+        let displacements = self.gpu.read(&scene.grid.velocity, nodes)?;
+        self.adopt(&mut scene)?;
+        Ok(Rounds { pseudo, displacements, adopted: self.states()? })
     }
 
     /// Sorts, and makes room for the search's vectors on the active blocks.

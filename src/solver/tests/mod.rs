@@ -1,7 +1,9 @@
 //! Tests of the whole solver on a device, and of each kernel against its twin.
 
+mod contact;
 mod motion;
 mod prestress;
+mod twins;
 mod validation;
 
 use super::validate::block;

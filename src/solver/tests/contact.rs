@@ -1,0 +1,151 @@
+//! Friction, restitution, colliders, forces, pins, and what is refused.
+
+use super::{block, centre_m, solver};
+use crate::Stop;
+use crate::gpu::Gpu;
+use crate::solver::obstacles::{self, distance_m};
+use crate::solver::{Collider, ObjectForce, Particles, PinRegion, Placement, Plane, Settings, Solver, SolverError};
+use crate::spec::{BoxShape, ColliderShape, PlaneShape, SphereShape};
+use glam::{Quat, Vec3};
+
+const CELL_M: f32 = 0.05;
+
+fn velocity_m_s(solver: &Solver) -> Vec3 {
+    let states = solver.states().expect("states");
+    let mass: f32 = states.iter().map(|s| s.mass_kg).sum();
+    states.iter().map(|s| s.velocity_m_s * s.mass_kg).sum::<Vec3>() / mass
+}
+
+fn on_ground(friction: f32, restitution: f32) -> Settings {
+    let ground = Plane { height_m: 0.0, friction, restitution };
+    Settings { ground: Some(ground), ..Settings::new(CELL_M) }
+}
+
+fn moving(velocity_m_s: Vec3, offset_m: Vec3) -> Placement {
+    Placement { rotation: Quat::IDENTITY, centre_m: Vec3::ZERO, offset_m, velocity_m_s, spin_rad_s: Vec3::ZERO }
+}
+
+#[test]
+fn friction_slows_a_sliding_block_by_mu_g() {
+    let particles = block(Vec3::new(0.0, 0.0, -0.005), Vec3::new(0.3, 0.3, 0.1), 0.025, 2e5, 0.3);
+    let mut solver = solver(on_ground(0.3, 0.0), &particles);
+    let stop = Stop::default();
+    solver.prestress(&[0], &stop, &mut |_| {}).expect("a prestress");
+    solver.place(0, &moving(Vec3::X, Vec3::ZERO)).expect("a placement");
+    solver.advance(0.2, &stop).expect("an advance");
+    let v = velocity_m_s(&solver);
+    let expected = 1.0 - 0.3 * 9.81 * 0.2;
+    assert!((v.x - expected).abs() < 0.05 * (1.0 - expected), "{v}, expected {expected}");
+    assert!(v.y.abs() < 0.01 && v.z.abs() < 0.02, "{v}");
+    solver.advance(0.5, &stop).expect("an advance");
+    let still = velocity_m_s(&solver);
+    assert!(still.x.abs() < 0.02, "it came to rest, {still}");
+}
+
+#[test]
+fn restitution_gives_speed_back() {
+    let come_back = |restitution: f32| {
+        let particles = block(Vec3::new(0.0, 0.0, 0.02), Vec3::splat(0.1), 0.025, 2e6, 0.2);
+        let mut solver = solver(on_ground(0.0, restitution), &particles);
+        solver.set_velocity(0, Vec3::new(0.0, 0.0, -1.0));
+        let mut fastest = 0f32;
+        for frame in 1..=6 {
+            solver.advance(f64::from(frame) * 0.02, &Stop::default()).expect("an advance");
+            fastest = fastest.max(velocity_m_s(&solver).z);
+        }
+        fastest
+    };
+    let (dull, lively) = (come_back(0.0), come_back(0.9));
+    assert!(lively > dull && lively > 0.6 && lively <= 1.0, "{dull} {lively}");
+}
+
+#[test]
+fn nothing_enters_a_box_or_a_sphere() {
+    let mut settings = on_ground(0.3, 0.0);
+    let table = BoxShape { centre_m: [0.1, 0.1, 0.2], size_m: [0.3, 0.5, 0.04] };
+    let ball = SphereShape { centre_m: [0.3, 0.1, 0.25], radius_m: 0.1 };
+    settings.colliders = vec![
+        Collider { shape: ColliderShape::Box(table), friction: 0.3, restitution: 0.0 },
+        Collider { shape: ColliderShape::Sphere(ball), friction: 0.3, restitution: 0.0 },
+    ];
+    let particles = block(Vec3::new(0.07, 0.03, 0.4), Vec3::splat(0.15), 0.025, 2e4, 0.3);
+    let colliders = obstacles::colliders(&settings);
+    let mut solver = solver(settings, &particles);
+    solver.set_velocity(0, Vec3::new(0.5, 0.0, -2.0));
+    let mut deepest = f32::INFINITY;
+    for frame in 1..=40 {
+        solver.advance(f64::from(frame) * 0.02, &Stop::default()).expect("an advance");
+        let states = solver.states().expect("states");
+        deepest = states.iter().map(|s| distance_m(&colliders, s.position_m)).fold(deepest, f32::min);
+    }
+    assert!(deepest > -0.002, "a particle is {deepest} m inside");
+    assert!(centre_m(&solver).z > 0.1, "it went through the table to {}", centre_m(&solver));
+}
+
+#[test]
+fn a_force_lasts_as_long_as_it_says() {
+    let mut settings = Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) };
+    // Begins and ends inside frames.
+    settings.forces = vec![ObjectForce { object: 0, from_s: 0.013, to_s: 0.051, acceleration_m_s2: Vec3::new(4.0, 0.0, 0.0) }];
+    let mut solver = solver(settings, &block(Vec3::ZERO, Vec3::splat(0.1), 0.025, 1e5, 0.3));
+    solver.advance(0.012, &Stop::default()).expect("an advance");
+    assert!(velocity_m_s(&solver).length() < 1e-6);
+    solver.advance(0.1, &Stop::default()).expect("an advance");
+    let v = velocity_m_s(&solver);
+    assert!((v - Vec3::X * (4.0 * 0.038)).length() < 1e-4, "{v}");
+}
+
+#[test]
+fn a_pin_holds_and_lets_go() {
+    let particles = block(Vec3::ZERO, Vec3::new(0.1, 0.1, 0.2), 0.025, 2e6, 0.3);
+    let mut settings = Settings::new(CELL_M);
+    let top = PlaneShape { point_m: [0.0, 0.0, 0.1], normal: [0.0, 0.0, -1.0] };
+    settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m: Vec3::ZERO, high_m: Vec3::new(0.1, 0.1, 0.2), from_s: 0.0, to_s: 0.1 }];
+    let mut solver = solver(settings, &particles);
+    let start = centre_m(&solver).z;
+    solver.advance(0.1, &Stop::default()).expect("an advance");
+    let held = centre_m(&solver).z;
+    assert!((held - start).abs() < 0.002, "held, it sank by {}", start - held);
+    solver.advance(0.2, &Stop::default()).expect("an advance");
+    let fallen = held - centre_m(&solver).z;
+    assert!((fallen - 0.5 * 9.81 * 0.01).abs() < 0.005, "let go, it fell {fallen}");
+}
+
+#[test]
+fn a_jelly_thrown_hard_at_the_ground_stays_finite() {
+    let particles = block(Vec3::new(0.0, 0.0, 0.1), Vec3::splat(0.15), 0.025, 2e3, 0.3);
+    let mut solver = solver(on_ground(0.3, 0.0), &particles);
+    solver.set_velocity(0, Vec3::new(3.0, 0.0, -15.0));
+    match solver.advance(0.2, &Stop::default()) {
+        Ok(report) => assert!(report.substeps > 0),
+        Err(error) => assert!(matches!(error, SolverError::Unstable { .. }), "{error}"),
+    }
+    for s in solver.states().expect("states") {
+        assert!(s.position_m.is_finite() && s.velocity_m_s.is_finite() && s.f().is_finite());
+        assert!(s.position_m.z >= -1e-6);
+    }
+}
+
+#[test]
+fn too_wide_a_world_is_an_error_that_says_so() {
+    let mut particles = block(Vec3::ZERO, Vec3::splat(0.1), 0.025, 1e5, 0.3);
+    particles.position_m[0] = Vec3::splat(900.0);
+    let mut solver = solver(Settings::new(CELL_M), &particles);
+    let error = solver.advance(0.1, &Stop::default()).expect_err("no device holds that");
+    assert!(matches!(error, SolverError::TooWide { .. }), "{error}");
+    assert!(error.to_string().contains("cells_across"), "{error}");
+}
+
+#[test]
+fn input_that_makes_no_sense_is_refused() {
+    let gpu = Gpu::shared_for_tests().expect("a device");
+    let good = block(Vec3::ZERO, Vec3::splat(0.1), 0.05, 1e5, 0.3);
+    let refused = |particles: &Particles, settings: Settings| matches!(Solver::new(&gpu, settings, particles), Err(SolverError::Input { .. }));
+    assert!(refused(&Particles::default(), Settings::new(CELL_M)));
+    assert!(refused(&Particles { poisson: vec![0.5; good.len()], ..good.clone() }, Settings::new(CELL_M)));
+    assert!(refused(&Particles { volume_m3: vec![0.0; good.len()], ..good.clone() }, Settings::new(CELL_M)));
+    assert!(refused(&Particles { object: Vec::new(), ..good.clone() }, Settings::new(CELL_M)));
+    assert!(refused(&good, Settings::new(0.0)));
+    assert!(refused(&good, Settings { cfl: 0.9, ..Settings::new(CELL_M) }));
+    assert!(!refused(&good, Settings::new(CELL_M)));
+}

@@ -1,0 +1,289 @@
+//! Each pass on the device against its twin in plain Rust.
+
+use super::solver;
+use crate::gpu::{Gpu, Recording};
+use crate::solver::advance::Substep;
+use crate::solver::core::Solver;
+use crate::solver::obstacles;
+use crate::solver::state::ParticleState;
+use crate::solver::twin::{self, Surroundings};
+use crate::solver::validate::block;
+use crate::solver::{Collider, Particles, PinRegion, Plane, Settings};
+use crate::spec::{BoxShape, ColliderShape, ElasticModel, PlaneShape, SphereShape};
+use glam::{IVec3, Mat3, Vec3};
+
+const CELL_M: f32 = 0.05;
+const DT_S: f32 = 4e-4;
+
+/// Numbers between -1 and 1 that look random and are always the same.
+struct Noise(u32);
+
+impl Noise {
+    fn next(&mut self) -> f32 {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (self.0 >> 8) as f32 / (1 << 23) as f32 - 1.0
+    }
+    fn vec(&mut self) -> Vec3 {
+        Vec3::new(self.next(), self.next(), self.next())
+    }
+}
+
+/// Two overlapping blocks of both energies, jittered, deformed and moving, that stand in the ground,
+/// in a box and in a sphere, with a pin.
+fn scene() -> (Solver, Vec<ParticleState>) {
+    let mut noise = Noise(7);
+    let mut particles = block(Vec3::new(0.0, 0.0, 0.01), Vec3::splat(0.2), 0.025, 2e5, 0.3);
+    let other = block(Vec3::new(0.19, 0.05, 0.02), Vec3::splat(0.1), 0.02, 5e4, 0.2);
+    append(&mut particles, other);
+    for x in &mut particles.position_m {
+        *x += noise.vec() * 0.008;
+    }
+    let mut settings = Settings::new(CELL_M);
+    settings.ground = Some(Plane { height_m: 0.003, friction: 0.4, restitution: 0.2 });
+    let cube = BoxShape { centre_m: [0.0, 0.1, 0.0], size_m: [0.02, 0.3, 0.3] };
+    let ball = SphereShape { centre_m: [0.33, 0.1, 0.1], radius_m: 0.05 };
+    settings.colliders = vec![
+        Collider { shape: ColliderShape::Box(cube), friction: 0.3, restitution: 0.0 },
+        Collider { shape: ColliderShape::Sphere(ball), friction: 0.1, restitution: 0.5 },
+    ];
+    let top = PlaneShape { point_m: [0.0, 0.0, 0.16], normal: [0.0, 0.0, -1.0] };
+    let (low_m, high_m) = (Vec3::ZERO, Vec3::splat(0.2));
+    settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0 }];
+    settings.forces = vec![crate::solver::ObjectForce { object: 1, from_s: 0.0, to_s: 1.0, acceleration_m_s2: Vec3::new(3.0, -2.0, 1.0) }];
+    let mut solver = solver(settings, &particles);
+    let mut count = 0;
+    solver
+        .edit(|s| {
+            count += 1;
+            s.velocity_m_s = Vec3::new(0.5, -0.2, -1.5) + noise.vec();
+            let mut f = Mat3::IDENTITY + Mat3::from_cols(noise.vec(), noise.vec(), noise.vec()) * 0.2;
+            // A few are turned inside out.
+            if count % 97 == 0 {
+                f.x_axis = -f.x_axis;
+            }
+            s.set_f(Mat3::from_rotation_z(1.0 + noise.next()) * f);
+            s.set_affine(Mat3::from_cols(noise.vec(), noise.vec(), noise.vec()) * (3.0 * s.mass_kg));
+        })
+        .expect("an edit");
+    let seen = solver.look().expect("a look");
+    solver.fit_window(seen.low, seen.high, 4).expect("a window");
+    solver.set_surroundings();
+    solver.start_segment();
+    let states = solver.states().expect("states");
+    (solver, states)
+}
+
+fn append(to: &mut Particles, from: Particles) {
+    let n = from.len();
+    to.position_m.extend(from.position_m);
+    to.velocity_m_s.extend(from.velocity_m_s);
+    to.volume_m3.extend(from.volume_m3);
+    to.density_kg_m3.extend(from.density_kg_m3);
+    to.young_pa.extend(from.young_pa);
+    to.poisson.extend(from.poisson);
+    to.model.extend(vec![ElasticModel::NeoHookean; n]);
+    to.object.extend(vec![1; n]);
+}
+
+fn gpu() -> Gpu {
+    Gpu::shared_for_tests().expect("a device")
+}
+
+fn run(build: impl FnOnce(&mut Recording)) {
+    let mut recording = Recording::default();
+    build(&mut recording);
+    gpu().submit(&recording);
+}
+
+fn sort(solver: &mut Solver) {
+    let bound = solver.bind_both().expect("bound");
+    run(|recording| solver.record_sort(&bound[solver.current], recording));
+    solver.current = 1 - solver.current;
+}
+
+const SUBSTEP: Substep = Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job: 0 };
+
+/// Storage index of a node, z first.
+fn stored(node: &[i32; 3], solver: &Solver) -> usize {
+    let cell = IVec3::new(node[2], node[1], node[0]) - IVec3::from(solver.params.origin);
+    twin::sort::index(cell.as_uvec3(), &solver.params) as usize
+}
+
+fn close(what: &str, got: Vec3, want: Vec3, scale: f32, tolerance: f32) {
+    assert!((got - want).length() <= tolerance * scale, "{what}: {got} on the device, {want} by the twin");
+}
+
+#[test]
+fn the_sort_lists_the_same_cells_blocks_and_order() {
+    let (mut solver, states) = scene();
+    sort(&mut solver);
+    let want = twin::sort::sort(&states, &solver.params);
+    let grid = solver.grid.clone().expect("a grid");
+    let n = states.len();
+    let matter: Vec<[f32; 4]> = gpu().read(&solver.buffers[solver.current].matter, 4 * n).expect("matter");
+    let order: Vec<u32> = (0..n).map(|i| matter[3 * n + i][0].to_bits()).collect();
+    assert_eq!(order, want.order);
+    let active: Vec<u32> = gpu().read(&grid.active_blocks, want.active.len() + 1).expect("blocks");
+    assert_eq!(active[0] as usize, want.active.len());
+    assert_eq!(active[1..], want.active);
+    let nodes = (solver.params.blocks.iter().product::<u32>() * 64) as usize;
+    let starts: Vec<u32> = gpu().read(&grid.cell_start, nodes).expect("starts");
+    assert!(want.starts.iter().all(|&(cell, start)| starts[cell as usize] == start));
+    let counts: Vec<u32> = gpu().read(&grid.cell_count, nodes).expect("counts");
+    assert!(counts.iter().all(|&c| c == 0), "counts are left for the next sort");
+    assert_eq!(solver.states().expect("states"), states, "a sort only reorders");
+}
+
+#[test]
+fn one_substep_pass_by_pass() {
+    let (mut solver, mut states) = scene();
+    let colliders = obstacles::colliders(&solver.settings);
+    let pins = [obstacles::pin(&solver.settings.pins[0], CELL_M)];
+    let accelerations = [Vec3::ZERO, Vec3::new(3.0, -2.0, 1.0)];
+    let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &accelerations };
+    sort(&mut solver);
+    let (passes, groups) = (solver.passes.clone(), solver.particle_groups());
+    let bound = solver.bind_both().expect("bound");
+    let b = &bound[solver.current];
+
+    // Stress into A.
+    run(|r| r.dispatch_with(&passes.stress, &b.stress, &SUBSTEP, groups));
+    twin::stress(&mut states, &solver.params, DT_S);
+    for (got, want) in solver.states().expect("states").iter().zip(&states) {
+        let scale = want.affine.iter().fold(0f32, |a, b| a.max(b.abs()));
+        let worst = got.affine.iter().zip(&want.affine).fold(0f32, |a, (g, w)| a.max((g - w).abs()));
+        // The rotation of what is inside out is found by turns that come to it slowly.
+        let tolerance = if want.f().determinant() < crate::solver::constants::FLAT { 2e-3 } else { 1e-5 };
+        assert!(worst <= tolerance * scale, "stress of particle {}: off by {worst} of {scale}", want.index);
+    }
+
+    // Particles to grid.
+    run(|r| r.dispatch_with(&passes.p2g, &b.p2g, &SUBSTEP, groups));
+    let want = twin::p2g(&states, &around);
+    let grid = solver.grid.clone().expect("a grid");
+    let nodes = (solver.params.blocks.iter().product::<u32>() * 64) as usize;
+    let sums: Vec<[i32; 4]> = gpu().read(&grid.sums, nodes).expect("sums");
+    let marks: Vec<[u32; 2]> = gpu().read(&grid.marks, nodes).expect("marks");
+    let heaviest = want.values().map(|n| n.mass).fold(0.0, f64::max);
+    let strongest = want.values().map(|n| n.momentum.length()).fold(0.0, f64::max);
+    let (mut mass, mut marked) = (0f64, 0);
+    for (node, value) in &want {
+        let k = stored(node, &solver);
+        let got = f64::from(sums[k][3]) / f64::from(solver.params.mass_units);
+        assert!((got - value.mass).abs() < 1e-5 * heaviest, "mass {got} of {}", value.mass);
+        mass += got;
+        for (got, want) in marks[k].iter().zip(value.marks) {
+            assert_eq!(*got == 0, want == 0, "mark at {node:?}");
+            if want != 0 {
+                marked += 1;
+                let gap = |mark| twin::mark_gap_m(mark, &solver.params);
+                assert!((gap(*got) - gap(want)).abs() < 1e-4 * CELL_M);
+            }
+        }
+    }
+    assert!(marked > 50, "only {marked} marks");
+    let total: f64 = states.iter().map(|s| f64::from(s.mass_kg)).sum();
+    assert!((mass / total - 1.0).abs() < 1e-6, "{mass} of {total} kg");
+
+    // Grid: velocities, from which momenta follow too.
+    run(|r| r.indirect_with(&passes.grid, &b.grid, &SUBSTEP, &grid.active_groups, 0));
+    let mut want = want;
+    twin::grid(&mut want, &around, DT_S);
+    let velocity: Vec<[f32; 4]> = gpu().read(&grid.velocity, nodes).expect("velocity");
+    for (node, value) in want.iter().filter(|(_, v)| v.mass > 1e-2 * heaviest) {
+        let scale = (strongest / value.mass) as f32;
+        close(&format!("node {node:?}"), Vec3::from_slice(&velocity[stored(node, &solver)]), value.velocity, scale, 1e-4);
+    }
+    let left: Vec<[i32; 4]> = gpu().read(&grid.sums, nodes).expect("sums");
+    assert!(left.iter().all(|s| *s == [0; 4]), "the grid is left for the next substep");
+
+    // Grid to particles, from the device's own velocities.
+    for (node, value) in want.iter_mut() {
+        value.velocity = Vec3::from_slice(&velocity[stored(node, &solver)]);
+    }
+    run(|r| r.dispatch_with(&passes.g2p, &b.g2p, &SUBSTEP, groups));
+    twin::g2p(&mut states, &want, &around, DT_S, DT_S);
+    for (got, want) in solver.states().expect("states").iter().zip(&states) {
+        let name = format!("particle {}", want.index);
+        close(&name, got.position_m, want.position_m, CELL_M, 1e-5);
+        close(&name, got.velocity_m_s, want.velocity_m_s, 5.0, 1e-5);
+        assert!(got.f().abs_diff_eq(want.f(), 2e-5), "F of {name}: {} and {}", got.f(), want.f());
+        let scale = want.affine.iter().fold(0f32, |a, b| a.max(b.abs()));
+        let worst = got.affine.iter().zip(&want.affine).fold(0f32, |a, (g, w)| a.max((g - w).abs()));
+        let tolerance = if want.f().determinant() < crate::solver::constants::FLAT { 2e-3 } else { 1e-5 };
+        assert!(worst <= tolerance * scale, "A of {name}: off by {worst} of {scale}");
+    }
+}
+
+#[test]
+fn measure_kick_and_frame_see_what_the_host_sees() {
+    let (mut solver, mut states) = scene();
+    let seen = solver.look().expect("a look");
+    let nodes = || states.iter().map(|s| twin::base_node(s.position_m, &solver.params));
+    assert_eq!(seen.low, nodes().fold(IVec3::MAX, IVec3::min));
+    assert_eq!(seen.high, nodes().fold(IVec3::MIN, IVec3::max));
+    let fastest = states.iter().map(|s| s.velocity_m_s.length()).fold(0.0, f32::max);
+    assert!((seen.speed_m_s - fastest).abs() < 1e-5);
+    let j = || states.iter().map(|s| s.f().determinant());
+    assert!((seen.j_low - j().fold(f32::INFINITY, f32::min)).abs() < 1e-5);
+    assert!((seen.j_high - j().fold(f32::NEG_INFINITY, f32::max)).abs() < 1e-5);
+    assert_eq!((seen.nonfinite, seen.suspects), (0, 3), "both objects have a particle inside out");
+
+    solver.kick(1, Vec3::new(1.0, 2.0, 3.0));
+    solver.set_velocity(0, Vec3::X);
+    for s in &mut states {
+        if s.object() == 1 {
+            s.velocity_m_s += Vec3::new(1.0, 2.0, 3.0);
+        } else {
+            s.velocity_m_s = Vec3::X;
+            s.affine = [0.0; 9];
+        }
+    }
+    assert_eq!(solver.states().expect("states"), states);
+
+    run(|r| solver.record_frame(r));
+    let motion: Vec<[u32; 8]> = gpu().read(solver.motion(), states.len()).expect("motion");
+    let velocity: Vec<[f32; 4]> = gpu().read(solver.velocity(), states.len()).expect("velocity");
+    for ((s, m), v) in states.iter().zip(&motion).zip(&velocity) {
+        assert_eq!([m[0], m[1], m[2]], s.position_m.to_array().map(f32::to_bits));
+        assert_eq!(Vec3::from_slice(v), s.velocity_m_s);
+        let (want, det) = twin::frame(s, Mat3::IDENTITY);
+        assert!((v[3] - det).abs() < 1e-5);
+        for (k, want) in want.iter().enumerate() {
+            let bits = m[3 + k / 2] >> (16 * (k % 2));
+            let got = half::f16::from_bits(bits as u16).to_f32();
+            assert!((got - want).abs() <= 1e-3 * want.abs().max(0.07), "entry {k}: {got} and {want}");
+        }
+        assert_eq!(m[7] >> 16, 0);
+    }
+}
+
+#[test]
+fn rounds_of_the_prestress_follow_the_twins() {
+    let mut noise = Noise(3);
+    let mut particles = block(Vec3::ZERO, Vec3::new(0.15, 0.15, 0.2), 0.025, 2e5, 0.3);
+    for x in &mut particles.position_m {
+        *x += noise.vec() * 0.005 - Vec3::Z * 0.005;
+    }
+    let mut settings = Settings::new(CELL_M);
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.4, restitution: 0.0 });
+    let mut solver = solver(settings, &particles);
+    let seen = solver.look().expect("a look");
+    solver.fit_window(seen.low, seen.high, 4).expect("a window");
+    solver.set_surroundings();
+    let states = solver.states().expect("states");
+    let got = solver.search_rounds(&states, 6).expect("rounds");
+    let colliders = obstacles::colliders(&solver.settings);
+    let around = Surroundings { params: solver.params, colliders: &colliders, pins: &[], accelerations: &[Vec3::ZERO] };
+    let lightest = f64::from(crate::solver::constants::LIGHTEST) / f64::from(solver.params.mass_units);
+    let want = twin::prestress::rounds(&got.pseudo, &around, 6, lightest);
+    let largest = want.values().map(|u| u.length()).fold(0.0, f64::max);
+    for (node, u) in &want {
+        let found = Vec3::from_slice(&got.displacements[stored(node, &solver)]).as_dvec3();
+        assert!((found - *u).length() < 2e-3 * largest, "node {node:?}: {found} and {u} of {largest}");
+    }
+    for (found, s) in got.adopted.iter().zip(&got.pseudo) {
+        let f = twin::prestress::adopted(s, &want, &around).as_mat3();
+        assert!(found.f().abs_diff_eq(f, 1e-4), "F of particle {}: {} and {f}", s.index, found.f());
+    }
+}

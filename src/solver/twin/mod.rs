@@ -1,0 +1,195 @@
+//! The solver's passes in plain Rust, for the tests: the same formulas on a map of nodes, sums in f64.
+
+pub mod material;
+pub mod prestress;
+pub mod sort;
+
+use super::constants::{GAP_STEPS, REST_CELLS_MAX};
+use super::core::Params;
+use super::obstacles::{ColliderRecord, PinRecord};
+use super::state::ParticleState;
+use glam::{DMat3, DVec3, IVec3, Mat3, Vec3};
+use std::collections::BTreeMap;
+
+/// What one node of the lattice holds.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Node {
+    pub momentum: DVec3,
+    pub mass: f64,
+    /// Contact marks of the ground and of the other colliders.
+    pub marks: [u32; 2],
+    pub velocity: Vec3,
+}
+
+/// Occupied nodes by their lattice coordinates, z first.
+pub type Grid = BTreeMap<[i32; 3], Node>;
+
+/// Everything around the particles.
+pub struct Surroundings<'a> {
+    pub params: Params,
+    pub colliders: &'a [ColliderRecord],
+    pub pins: &'a [PinRecord],
+    pub accelerations: &'a [Vec3],
+}
+
+/// First node of a particle's stencil.
+pub fn base_node(x: Vec3, params: &Params) -> IVec3 {
+    (x * params.per_m - Vec3::splat(0.5)).floor().as_ivec3()
+}
+
+/// The 27 nodes of a stencil: coordinates, weight, and distance from the particle in cells.
+pub fn stencil(x: Vec3, params: &Params) -> Vec<([i32; 3], f32, Vec3)> {
+    let base = base_node(x, params);
+    let place = x * params.per_m - base.as_vec3();
+    let weights =
+        [0.5 * (Vec3::splat(1.5) - place).powf(2.0), Vec3::splat(0.75) - (place - Vec3::ONE).powf(2.0), 0.5 * (place - Vec3::splat(0.5)).powf(2.0)];
+    let mut nodes = Vec::with_capacity(27);
+    for k in 0..27usize {
+        let at = [k % 3, k / 3 % 3, k / 9];
+        let weight = weights[at[0]].x * weights[at[1]].y * weights[at[2]].z;
+        let node = base + IVec3::new(at[0] as i32, at[1] as i32, at[2] as i32);
+        let d = Vec3::new(at[0] as f32, at[1] as f32, at[2] as f32) - place;
+        nodes.push(([node.z, node.y, node.x], weight, d));
+    }
+    nodes
+}
+
+fn affine(state: &ParticleState) -> DMat3 {
+    Mat3::from_cols_array(&state.affine).transpose().as_dmat3()
+}
+
+/// `stress.wgsl`: A gets the stress of the first substep.
+pub fn stress(states: &mut [ParticleState], params: &Params, dt_s: f32) {
+    for s in states {
+        let tau = material::kirchhoff(s.f().as_dmat3(), f64::from(s.mu_pa), f64::from(s.lambda_pa), s.tag >> 16 == 1);
+        let weight = f64::from(dt_s) * 4.0 * f64::from(params.per_m).powi(2) * f64::from(s.volume_m3);
+        s.set_affine((affine(s) - tau * weight).as_mat3());
+    }
+}
+
+/// `p2g.wgsl`: mass, momentum and contact marks.
+pub fn p2g(states: &[ParticleState], around: &Surroundings) -> Grid {
+    let (params, ground) = (&around.params, around.params.has_ground as usize);
+    let mut grid = Grid::new();
+    for s in states {
+        let found = [nearest(s, &around.colliders[..ground], 0, params), nearest(s, &around.colliders[ground..], ground, params)];
+        let a = affine(s) * f64::from(params.cell_m);
+        for (node, weight, d) in stencil(s.position_m, params) {
+            let (weight, node) = (f64::from(weight), grid.entry(node).or_default());
+            node.momentum += (s.velocity_m_s.as_dvec3() * f64::from(s.mass_kg) + a * d.as_dvec3()) * weight;
+            node.mass += f64::from(s.mass_kg) * weight;
+            for (mark, found) in node.marks.iter_mut().zip(found) {
+                if let Some((value, _)) = found.filter(|(_, normal)| normal.dot(d) <= 0.5) {
+                    *mark = (*mark).max(value);
+                }
+            }
+        }
+    }
+    grid
+}
+
+/// The mark of the nearest collider in reach, and its normal.
+fn nearest(s: &ParticleState, colliders: &[ColliderRecord], first: usize, params: &Params) -> Option<(u32, Vec3)> {
+    let mut best: Option<(u32, Vec3)> = None;
+    for (c, collider) in colliders.iter().enumerate() {
+        let touch = collider.touch(s.position_m);
+        let gap_m = touch.distance_m - s.rest_m;
+        if touch.distance_m > params.reach_m + REST_CELLS_MAX * params.cell_m || gap_m >= params.reach_m {
+            continue;
+        }
+        let near = 1.0 - (gap_m / params.reach_m).clamp(0.0, 1.0);
+        let mark = (((near * GAP_STEPS) as u32 + 1) << 10) | ((c + first) as u32 * 8 + touch.face);
+        if best.is_none_or(|(most, _)| mark > most) {
+            best = Some((mark, collider.normal(touch.face, s.position_m)));
+        }
+    }
+    best
+}
+
+/// Metres between a marked node's nearest particle and its rest.
+pub fn mark_gap_m(mark: u32, params: &Params) -> f32 {
+    params.reach_m * (1.0 - ((mark >> 10) - 1) as f32 / GAP_STEPS)
+}
+
+/// `grid.wgsl`: velocities after gravity, contact and pins.
+pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32) {
+    for (node, value) in grid.iter_mut() {
+        let x = Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * around.params.cell_m;
+        let mut v = (value.momentum / value.mass).as_vec3() + Vec3::from(around.params.gravity_m_s2) * dt_s;
+        for mark in [value.marks[1], value.marks[0]] {
+            if mark != 0 {
+                v = respond(v, mark, x, around, dt_s);
+            }
+        }
+        if around.pins.iter().any(|pin| pinned(pin, x)) {
+            v = Vec3::ZERO;
+        }
+        value.velocity = v;
+    }
+}
+
+fn pinned(pin: &PinRecord, x: Vec3) -> bool {
+    let shape = ColliderRecord { at: pin.at, shape: pin.shape, surface: [0.0; 4] };
+    x.cmpge(Vec3::from_slice(&pin.low)).all() && x.cmple(Vec3::from_slice(&pin.high)).all() && shape.touch(x).distance_m <= 0.0
+}
+
+fn respond(v: Vec3, mark: u32, x: Vec3, around: &Surroundings, dt_s: f32) -> Vec3 {
+    let collider = &around.colliders[(mark & 1023) as usize >> 3];
+    let [friction, restitution, ..] = collider.surface;
+    let normal = collider.normal(mark & 7, x);
+    let approach = v.dot(normal);
+    let allowed = -mark_gap_m(mark, &around.params) / dt_s;
+    if approach >= allowed {
+        return v;
+    }
+    let resting = 4.0 * Vec3::from(around.params.gravity_m_s2).length() * dt_s;
+    let leaving = allowed.max(restitution * (-approach - resting).max(0.0));
+    let sliding = v - normal * approach;
+    let (speed, grip) = (sliding.length(), friction * (leaving - approach));
+    normal * leaving + if speed > grip { sliding * (1.0 - grip / speed) } else { Vec3::ZERO }
+}
+
+/// Velocity and its gradient at a particle.
+pub fn gather(grid: &Grid, x: Vec3, params: &Params) -> (DVec3, DMat3) {
+    let (mut v, mut gradient) = (DVec3::ZERO, DMat3::ZERO);
+    for (node, weight, d) in stencil(x, params) {
+        let u = grid.get(&node).map_or(Vec3::ZERO, |n| n.velocity).as_dvec3() * f64::from(weight);
+        let d = d.as_dvec3();
+        v += u;
+        gradient += DMat3::from_cols(u * d.x, u * d.y, u * d.z);
+    }
+    (v, gradient * (4.0 * f64::from(params.per_m)))
+}
+
+/// `g2p.wgsl`: moves and deforms the particles, and prepares the stress of the next substep.
+pub fn g2p(states: &mut [ParticleState], grid: &Grid, around: &Surroundings, dt_s: f32, dt_next_s: f32) {
+    let params = &around.params;
+    for s in states {
+        let (v, gradient) = gather(grid, s.position_m, params);
+        let mut x = s.position_m + v.as_vec3() * dt_s;
+        let mut v = v.as_vec3() + around.accelerations[s.object() as usize] * dt_s;
+        for collider in around.colliders {
+            let touch = collider.touch(x);
+            let behind_m = s.rest_m.min(0.0) - touch.distance_m;
+            if behind_m > 0.0 {
+                let normal = collider.normal(touch.face, x);
+                x += normal * behind_m;
+                v -= normal * v.dot(normal).min(0.0);
+            }
+        }
+        let f = (DMat3::IDENTITY + gradient * f64::from(dt_s)) * s.f().as_dmat3();
+        let tau = material::kirchhoff(f, f64::from(s.mu_pa), f64::from(s.lambda_pa), s.tag >> 16 == 1);
+        let weight = f64::from(dt_next_s) * 4.0 * f64::from(params.per_m).powi(2) * f64::from(s.volume_m3);
+        s.set_affine((gradient * f64::from(s.mass_kg) - tau * weight).as_mat3());
+        s.set_f(f.as_mat3());
+        s.position_m = x;
+        s.velocity_m_s = v;
+    }
+}
+
+/// `frame.wgsl`: nine entries of G - I by rows, rounded, and det G.
+pub fn frame(state: &ParticleState, unstressed: Mat3) -> ([f32; 9], f32) {
+    let g = state.f() * unstressed;
+    let tidy = |value: f32| (value * 16384.0).round_ties_even() / 16384.0;
+    ((g - Mat3::IDENTITY).transpose().to_cols_array().map(tidy), g.determinant())
+}
