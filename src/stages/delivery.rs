@@ -30,6 +30,8 @@ struct Encoded {
 pub(super) struct Measured {
     pub motion: Vec<u8>,
     pub rows: Vec<Row>,
+    /// Particles with a value that is not a number.
+    pub nonfinite: u64,
 }
 
 /// The pipeline from the device to the sink.
@@ -96,8 +98,9 @@ impl<'a> Delivery<'a> {
             let mut parts = readback.wait(self.gpu)?;
             let velocity = parts.pop().unwrap_or_default();
             let motion = parts.pop().unwrap_or_default();
-            let rows = measure(&MotionFrame::unpack(&motion, &velocity), &self.bodies);
-            self.measured.push(Measured { motion, rows });
+            let frame = MotionFrame::unpack(&motion, &velocity);
+            let (rows, nonfinite) = (measure(&frame, &self.bodies), frame.nonfinite());
+            self.measured.push(Measured { motion, rows, nonfinite });
         }
         let Some(picture) = pending.picture else { return Ok(()) };
         let image = picture.read(self.gpu)?;

@@ -43,7 +43,7 @@ pub struct SolverMetrics {
     pub substeps: u64,
     /// Particles in all.
     pub particles: u64,
-    /// Particles with a value that is not a number, at the end: always 0.
+    /// Most particles of any frame with a value that is not a number.
     pub nonfinite: u64,
     /// Frames that were rolled back and repeated with a smaller substep.
     pub retries: u32,

@@ -332,6 +332,7 @@ impl<'a> Motion<'a> {
         }
         let measured = delivery.settle(sink)?;
         let rows: Vec<Vec<Row>> = measured.iter().map(|m| m.rows.clone()).collect();
+        totals.nonfinite = measured.iter().map(|m| m.nonfinite).max().unwrap_or(0);
         if !stopped {
             let meta = SegmentMeta { rows: rows.clone(), solver: totals.clone(), frame_bytes: if self.keep_motion { bytes as usize } else { 0 } };
             let motion: Vec<u8> = measured.into_iter().flat_map(|m| m.motion).collect();

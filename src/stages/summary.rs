@@ -19,13 +19,12 @@ pub(super) fn totals(advance: &Advance) -> SolverTotals {
         dt_min_s: if advance.substeps > 0 { advance.dt_min_s } else { 0.0 },
         dt_max_s: advance.dt_max_s,
         retries: advance.retries,
-        nonfinite: 0,
         softened: advance
             .softened
             .iter()
             .map(|s| format!("object {}: young_pa times {} from {:.3} s, to stay stable", s.object, s.factor, s.time_s))
             .collect(),
-        seconds: 0.0,
+        ..SolverTotals::default()
     }
 }
 

@@ -39,6 +39,15 @@ impl MotionFrame {
     }
 }
 
+impl MotionFrame {
+    /// Particles with a value that is not a number.
+    pub fn nonfinite(&self) -> u64 {
+        let motion = self.position_m.iter().zip(&self.deformation).map(|(x, g)| x.is_finite() && g.is_finite());
+        let bad = |fine: bool| u64::from(!fine);
+        motion.map(bad).sum::<u64>().max(self.velocity_m_s.iter().map(|v| bad(v.is_finite())).sum())
+    }
+}
+
 /// What does not change from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Bodies {
@@ -186,6 +195,8 @@ mod tests {
         }
         let frame = MotionFrame::unpack(&words, &[]);
         assert_eq!(frame.position_m, [Vec3::new(1.0, -2.0, 3.5)]);
+        assert_eq!(frame.nonfinite(), 0);
+        assert_eq!(MotionFrame { position_m: vec![Vec3::NAN], ..frame.clone() }.nonfinite(), 1);
         assert_eq!(frame.deformation[0].row(0), Vec3::new(1.5, 0.25, 0.0));
         assert_eq!(frame.deformation[0].row(2), Vec3::new(0.0, 0.0, 1.125));
     }
