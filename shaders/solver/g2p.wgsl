@@ -9,6 +9,7 @@
 // Acceleration of each object, beside gravity.
 @group(0) @binding(5) var<storage, read> objects: array<vec4<f32>>;
 @group(0) @binding(6) var<storage, read_write> control: Control;
+@group(0) @binding(7) var<storage, read> substances: array<Substance>;
 var<immediate> substep: Substep;
 
 @compute @workgroup_size(WORKGROUP)
@@ -41,7 +42,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
 
     let old = read_deformation(i);
     let f = old + substep.dt_s * (gradient * old);
-    let tau = kirchhoff(f, matter[i].w, matter[n + i].w, (object >> 16u) == 1u);
+    let substance = substances[row_of(object)];
+    let tau = kirchhoff(f, matter[i].w, matter[n + i].w, substance.model == 1u);
     let weight = substep.dt_next_s * 4.0 * params.per_m * params.per_m * matter[2u * n + i].w;
     let affine = position.w * gradient - weight * tau;
     let momentum = momentum_measure(position.w, v, affine);

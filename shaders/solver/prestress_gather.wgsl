@@ -10,6 +10,7 @@
 @group(0) @binding(2) var<storage, read_write> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> velocity: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> control: Control;
+@group(0) @binding(5) var<storage, read> substances: array<Substance>;
 var<immediate> substep: Substep;
 
 // What a linear solid answers to a strain.
@@ -57,7 +58,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let adopt = steer(substep.job, params.count) == ADOPT;
     var tau = linear_stress(0.5 * (gradient + transpose(gradient)), mu, lambda);
     if (adopt && takes_part) {
-        let neo_hookean = (bitcast<u32>(matter[3u * n + i].y) >> 16u) == 1u;
+        let neo_hookean = substances[row_of(bitcast<u32>(matter[3u * n + i].y))].model == 1u;
         let old = read_deformation(i);
         let f = carry(old, kirchhoff(old, mu, lambda, neo_hookean) + tau, mu, lambda, neo_hookean);
         tau = kirchhoff(f, mu, lambda, neo_hookean);

@@ -5,6 +5,7 @@
 @group(0) @binding(1) var<storage, read_write> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> control: Control;
+@group(0) @binding(4) var<storage, read> substances: array<Substance>;
 var<immediate> substep: Substep;
 
 @compute @workgroup_size(WORKGROUP)
@@ -15,8 +16,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
     let n = params.count;
     let f = read_deformation(i);
-    let neo_hookean = (bitcast<u32>(matter[3u * n + i].y) >> 16u) == 1u;
-    let tau = kirchhoff(f, matter[i].w, matter[n + i].w, neo_hookean);
+    let substance = substances[row_of(bitcast<u32>(matter[3u * n + i].y))];
+    let tau = kirchhoff(f, matter[i].w, matter[n + i].w, substance.model == 1u);
     let weight = substep.dt_next_s * 4.0 * params.per_m * params.per_m * matter[2u * n + i].w;
     let affine = read_affine(i) - weight * tau;
     let v = kinematics[n + i].xyz;

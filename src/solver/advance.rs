@@ -306,19 +306,25 @@ impl Solver {
             scan_cells: gpu.bind(&p.scan_cells, &[params, &grid.active_blocks, &grid.block_start, &grid.cell_count, &grid.cell_start]),
             scatter: gpu.bind(&p.scatter, &[params, kinematics, matter, &grid.cell_count, &grid.cell_start, &self.slots]),
             order: gpu.bind(&p.order, &[params, &self.slots, kinematics, matter, &other.kinematics, &other.matter]),
-            stress: gpu.bind(&p.stress, &[params, kinematics, matter, &self.control]),
+            stress: gpu.bind(&p.stress, &[params, kinematics, matter, &self.control, &self.substances_buffer]),
             p2g: gpu.bind(&p.p2g, &[params, kinematics, matter, &self.colliders_buffer, &grid.sums, &grid.marks, &self.control]),
             grid: gpu.bind(
                 &p.grid,
                 &[params, &grid.active_blocks, &self.colliders_buffer, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, &self.control],
             ),
-            g2p: gpu.bind(&p.g2p, &[params, kinematics, matter, &grid.velocity, &self.colliders_buffer, &self.objects_buffer, &self.control]),
+            g2p: gpu.bind(
+                &p.g2p,
+                &[params, kinematics, matter, &grid.velocity, &self.colliders_buffer, &self.objects_buffer, &self.control, &self.substances_buffer],
+            ),
         }
     }
 
     /// Keeps the present state on the device.
     fn backup(&self) {
         self.copy_state(&self.buffers[self.current], &self.backup);
+        let mut recording = Recording::default();
+        self.kept.iter().for_each(|k| k.keep(&mut recording));
+        self.gpu.submit(&recording);
     }
 
     /// Back to the kept state; whatever the failed segment left on the grid goes.
@@ -330,6 +336,7 @@ impl Solver {
         for buffer in self.grid.iter().flat_map(GridBuffers::dirty) {
             recording.clear(buffer);
         }
+        self.kept.iter().for_each(|k| k.restore(&mut recording));
         self.gpu.submit(&recording);
     }
 

@@ -2,9 +2,9 @@
 
 use super::advance::Plan;
 use super::core::Solver;
+use super::substance::Substance;
 use super::types::{Particles, Plane, Settings, SolverError};
 use crate::gpu::{Gpu, PassTime, Recording, Tier};
-use crate::spec::ElasticModel;
 use glam::Vec3;
 
 /// One benchmark's figure.
@@ -78,7 +78,8 @@ fn cube(particles: usize) -> Particles {
         density_kg_m3: vec![1000.0; n],
         young_pa: vec![1e5; n],
         poisson: vec![0.3; n],
-        model: vec![ElasticModel::Corotated; n],
+        substance: vec![0; n],
+        substances: vec![Substance::default()],
         object: vec![0; n],
     }
 }

@@ -28,6 +28,9 @@ impl Solver {
         bytes.extend_from_slice(bytemuck::cast_slice(&self.states()?));
         let unstressed: Vec<[f32; 12]> = self.gpu.read(&self.unstressed, count as usize)?;
         bytes.extend_from_slice(bytemuck::cast_slice(&unstressed));
+        for kept in &self.kept {
+            bytes.extend(kept.read(&self.gpu)?);
+        }
         Ok(bytes)
     }
 
@@ -36,17 +39,25 @@ impl Solver {
         let refuse = |what: String| SolverError::Checkpoint { what };
         let count = self.params.count as usize;
         let (head, states, tail) = (size_of::<Header>(), count * size_of::<ParticleState>(), count * size_of::<[f32; 12]>());
-        if bytes.len() != head + states + tail {
-            return Err(refuse(format!("{} bytes where {count} particles take {}", bytes.len(), head + states + tail)));
+        let beside: usize = self.kept.iter().map(|k| k.bytes() as usize).sum();
+        let whole = head + states + tail + beside;
+        if bytes.len() != whole {
+            return Err(refuse(format!("{} bytes where {count} particles take {whole}", bytes.len())));
         }
         let header: Header = bytemuck::pod_read_unaligned(&bytes[..head]);
         if header.magic != MAGIC || header.version != super::VERSION || header.count as usize != count {
             return Err(refuse(format!("version {} for {} particles", header.version, header.count)));
         }
         let particles: Vec<ParticleState> = bytemuck::pod_collect_to_vec(&bytes[head..head + states]);
-        let unstressed: Vec<[f32; 12]> = bytemuck::pod_collect_to_vec(&bytes[head + states..]);
+        let unstressed: Vec<[f32; 12]> = bytemuck::pod_collect_to_vec(&bytes[head + states..head + states + tail]);
         self.replace(&particles);
         self.gpu.upload(&self.unstressed, &unstressed);
+        let mut rest = &bytes[head + states + tail..];
+        for kept in &self.kept {
+            let (content, more) = rest.split_at(kept.bytes() as usize);
+            kept.write(&self.gpu, content);
+            rest = more;
+        }
         self.substep = header.substep;
         self.time_s = header.time_s;
         Ok(())

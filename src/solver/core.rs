@@ -2,9 +2,11 @@
 
 use super::constants::{FIXED_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
 use super::grid::{GridBuffers, Window, allowed_blocks};
+use super::kept::Kept;
 use super::obstacles::{self, PinRecord};
 use super::passes::Passes;
 use super::state::{self, ParticleState, StateBuffers};
+use super::substance::{self, Substance};
 use super::types::{Particles, Placement, Settings, SolverError};
 use super::watch::{Control, Watch};
 use crate::gpu::{Gpu, Recording};
@@ -55,12 +57,17 @@ pub struct Solver {
     pub(super) colliders_buffer: wgpu::Buffer,
     pub(super) pins_buffer: wgpu::Buffer,
     pub(super) objects_buffer: wgpu::Buffer,
+    #[cfg_attr(not(test), expect(dead_code, reason = "rows are added when a material changes"))]
+    pub(super) substances: Vec<Substance>,
+    pub(super) substances_buffer: wgpu::Buffer,
     pub(super) object_count: u32,
     pub(super) control: wgpu::Buffer,
     /// The order of the particles is that of `buffers[current]`; a sort writes the other one.
     pub(super) buffers: [StateBuffers; 2],
     pub(super) current: usize,
     pub(super) backup: StateBuffers,
+    /// State beside the particles.
+    pub(super) kept: Vec<Kept>,
     pub(super) slots: wgpu::Buffer,
     /// Rows of F0^-1 in the original order.
     pub(super) unstressed: wgpu::Buffer,
@@ -108,10 +115,13 @@ impl Solver {
             pins_buffer: gpu.storage::<PinRecord>("solver.pins", settings.pins.len().max(1))?,
             objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,
             object_count,
+            substances_buffer: gpu.storage_from("solver.substances", &padded(&substance::records(&particles.substances), 1))?,
+            substances: particles.substances.clone(),
             control: gpu.storage::<Control>("solver.control", 1)?,
             buffers: [StateBuffers::new(gpu, "solver.even", n)?, StateBuffers::new(gpu, "solver.odd", n)?],
             current: 0,
             backup: StateBuffers::new(gpu, "solver.backup", n)?,
+            kept: Vec::new(),
             slots: gpu.storage::<[u32; 4]>("solver.slots", n)?,
             unstressed: gpu.storage_from("solver.unstressed", &vec![identity; n])?,
             motion: gpu.storage::<[u32; 8]>("solver.motion", n)?,

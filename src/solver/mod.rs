@@ -5,19 +5,26 @@
 //! every few substeps a sort. A run is cut into segments that end at frames and at changes of its
 //! surroundings; nothing is read back inside one, each is watched, and rolled back if it fails.
 
+// First, for the macro that the sets of passes are written with.
+#[macro_use]
+mod passes;
+
 mod advance;
 mod bench;
 mod checkpoint;
 mod constants;
 mod core;
 mod grid;
+mod kept;
 mod obstacles;
-mod passes;
 mod prestress;
 mod state;
+mod substance;
 mod types;
 pub mod validate;
 mod watch;
+
+use crate::gpu::KernelSource;
 
 #[cfg(test)]
 mod tests;
@@ -26,8 +33,18 @@ mod twin;
 
 pub use bench::{BenchReport, bench_substep};
 pub use core::Solver;
-pub use passes::{kernels, shader_text};
+pub use substance::Substance;
 pub use types::{Advance, Collider, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError};
+
+/// Every pass of the solver, for validation and keys.
+pub fn kernels() -> Vec<KernelSource> {
+    passes::kernels()
+}
+
+/// Shader text of all passes, for the keys of stages.
+pub fn shader_text() -> String {
+    kernels().iter().map(KernelSource::wgsl).collect()
+}
 
 /// Raised whenever the same input gives other bits.
 pub const VERSION: u32 = 5;

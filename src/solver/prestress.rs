@@ -261,7 +261,8 @@ impl Solver {
         let (gpu, p, params) = (&self.gpu, &self.passes, &self.params_buffer);
         let state = &self.buffers[self.current];
         let groups = Groups {
-            gather: gpu.bind(&p.prestress_gather, &[params, &state.kinematics, &state.matter, &grid.velocity, &self.control]),
+            gather: gpu
+                .bind(&p.prestress_gather, &[params, &state.kinematics, &state.matter, &grid.velocity, &self.control, &self.substances_buffer]),
             residual: gpu.bind(
                 &p.prestress_residual,
                 &[

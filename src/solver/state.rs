@@ -5,7 +5,6 @@ use super::constants::REST_CELLS;
 use super::obstacles::{ColliderRecord, distance_m};
 use super::types::{Particles, SolverError};
 use crate::gpu::{Gpu, GpuError};
-use crate::spec::ElasticModel;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
 
@@ -19,7 +18,7 @@ pub(super) struct ParticleState {
     pub position_m: Vec3,
     pub mass_kg: f32,
     pub velocity_m_s: Vec3,
-    /// Index in the order it was given, and object with the model above its 16 bits.
+    /// In the order it was given.
     pub index: u32,
     /// mass C, the affine momentum, by rows.
     pub affine: [f32; 9],
@@ -28,6 +27,7 @@ pub(super) struct ParticleState {
     pub mu_pa: f32,
     pub lambda_pa: f32,
     pub volume_m3: f32,
+    /// Object in the lower half, row of the substance in the upper.
     pub tag: u32,
     /// How far from its support it stands, metres; see `REST_CELLS`.
     pub rest_m: f32,
@@ -37,6 +37,12 @@ pub(super) struct ParticleState {
 }
 
 impl ParticleState {
+    /// Row of its substance.
+    #[cfg_attr(not(test), expect(dead_code, reason = "time steps of other laws than the elastic one ask for it"))]
+    pub fn substance(&self) -> usize {
+        (self.tag >> 16) as usize
+    }
+
     /// Index of its object.
     pub fn object(&self) -> u32 {
         self.tag & 0xffff
@@ -69,7 +75,7 @@ pub(super) fn initial(particles: &Particles, colliders: &[ColliderRecord], cell_
         particles.density_kg_m3.len(),
         particles.young_pa.len(),
         particles.poisson.len(),
-        particles.model.len(),
+        particles.substance.len(),
         particles.object.len(),
     ];
     let refuse = |what: String, expected: &str| Err(SolverError::Input { what, expected: expected.to_owned() });
@@ -77,6 +83,9 @@ pub(super) fn initial(particles: &Particles, colliders: &[ColliderRecord], cell_
         return refuse(format!("{n} positions and arrays of {lengths:?}"), "at least one particle and arrays of one length");
     }
     let mut states = Vec::with_capacity(n);
+    if let Some(row) = particles.substance.iter().find(|&&row| usize::from(row) >= particles.substances.len()) {
+        return refuse(format!("a particle of substance {row} of {}", particles.substances.len()), "a row of the table");
+    }
     for i in 0..n {
         let (mu_pa, lambda_pa) = particles.lame_pa(i);
         let mass_kg = particles.volume_m3[i] * particles.density_kg_m3[i];
@@ -89,7 +98,6 @@ pub(super) fn initial(particles: &Particles, colliders: &[ColliderRecord], cell_
                 "finite places, positive mass and modulus, nu over -1 and under 0.5",
             );
         }
-        let model = u32::from(particles.model[i] == ElasticModel::NeoHookean);
         let mut state = ParticleState {
             position_m: x,
             mass_kg,
@@ -98,7 +106,7 @@ pub(super) fn initial(particles: &Particles, colliders: &[ColliderRecord], cell_
             mu_pa,
             lambda_pa,
             volume_m3: particles.volume_m3[i],
-            tag: particles.object[i] | model << 16,
+            tag: particles.object[i] | u32::from(particles.substance[i]) << 16,
             rest_m: distance_m(colliders, x).clamp(-2.0 * REST_CELLS * cell_m, REST_CELLS * cell_m),
             ..Default::default()
         };

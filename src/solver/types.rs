@@ -1,7 +1,8 @@
 //! What the solver is given and what it answers.
 
+use super::substance::Substance;
 use crate::gpu::GpuError;
-use crate::spec::{ColliderShape, ElasticModel};
+use crate::spec::ColliderShape;
 use glam::{Quat, Vec3};
 
 /// The particles of all objects, as sampled: the captured pose, free of stress. World frame.
@@ -19,8 +20,10 @@ pub struct Particles {
     pub young_pa: Vec<f32>,
     /// Poisson's ratio, above -1 and below 0.5.
     pub poisson: Vec<f32>,
-    /// Which energy.
-    pub model: Vec<ElasticModel>,
+    /// Row of `substances` that each is made of.
+    pub substance: Vec<u16>,
+    /// The table of them.
+    pub substances: Vec<Substance>,
     /// Index of the object that each belongs to, from 0.
     pub object: Vec<u32>,
 }

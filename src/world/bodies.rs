@@ -3,7 +3,7 @@
 use super::Prepared;
 use super::measure::Bodies;
 use crate::proxy::{self, Solid};
-use crate::solver::Particles;
+use crate::solver::{Particles, Substance};
 use crate::spec::{Auto, Material, Rest, Spec};
 use glam::Vec3;
 
@@ -79,7 +79,9 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     particles.density_kg_m3.extend(std::iter::repeat_n(density as f32, count));
     particles.young_pa.extend(young_local);
     particles.poisson.extend(std::iter::repeat_n(elastic.poisson as f32, count));
-    particles.model.extend(std::iter::repeat_n(elastic.model, count));
+    let row = particles.substances.len() as u16;
+    particles.substances.push(Substance::Elastic(elastic.model));
+    particles.substance.extend(std::iter::repeat_n(row, count));
     particles.object.extend(std::iter::repeat_n(index as u32, count));
     let mass: Vec<f32> = solid.volume_m3.iter().map(|v| v * density as f32).collect();
     let total: f64 = mass.iter().map(|&m| f64::from(m)).sum();

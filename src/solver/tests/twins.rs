@@ -6,6 +6,7 @@ use crate::solver::advance::Substep;
 use crate::solver::core::Solver;
 use crate::solver::obstacles;
 use crate::solver::state::ParticleState;
+use crate::solver::substance::Substance;
 use crate::solver::twin::{self, Surroundings};
 use crate::solver::validate::block;
 use crate::solver::{Collider, Particles, PinRegion, Plane, Settings};
@@ -81,7 +82,8 @@ fn append(to: &mut Particles, from: Particles) {
     to.density_kg_m3.extend(from.density_kg_m3);
     to.young_pa.extend(from.young_pa);
     to.poisson.extend(from.poisson);
-    to.model.extend(vec![ElasticModel::NeoHookean; n]);
+    to.substance.extend(vec![1; n]);
+    to.substances = vec![Substance::Elastic(ElasticModel::Corotated), Substance::Elastic(ElasticModel::NeoHookean)];
     to.object.extend(vec![1; n]);
 }
 
@@ -140,7 +142,8 @@ fn one_substep_pass_by_pass() {
     let colliders = obstacles::colliders(&solver.settings);
     let pins = [obstacles::pin(&solver.settings.pins[0], CELL_M)];
     let accelerations = [Vec3::ZERO, Vec3::new(3.0, -2.0, 1.0)];
-    let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &accelerations };
+    let substances = solver.substances.clone();
+    let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &accelerations, substances: &substances };
     sort(&mut solver);
     let (passes, groups) = (solver.passes.clone(), solver.particle_groups());
     let bound = solver.bind_both().expect("bound");
@@ -148,7 +151,7 @@ fn one_substep_pass_by_pass() {
 
     // Stress into A.
     run(|r| r.dispatch_with(&passes.stress, &b.stress, &SUBSTEP, groups));
-    twin::stress(&mut states, &solver.params, DT_S);
+    twin::stress(&mut states, &around, DT_S);
     for (got, want) in solver.states().expect("states").iter().zip(&states) {
         let scale = want.affine.iter().fold(0f32, |a, b| a.max(b.abs()));
         let worst = got.affine.iter().zip(&want.affine).fold(0f32, |a, (g, w)| a.max((g - w).abs()));
@@ -274,7 +277,8 @@ fn rounds_of_the_prestress_follow_the_twins() {
     let states = solver.states().expect("states");
     let got = solver.search_rounds(&states, 6).expect("rounds");
     let colliders = obstacles::colliders(&solver.settings);
-    let around = Surroundings { params: solver.params, colliders: &colliders, pins: &[], accelerations: &[Vec3::ZERO] };
+    let around =
+        Surroundings { params: solver.params, colliders: &colliders, pins: &[], accelerations: &[Vec3::ZERO], substances: &solver.substances };
     let lightest = f64::from(crate::solver::constants::LIGHTEST) / f64::from(solver.params.mass_units);
     let want = twin::prestress::rounds(&got.pseudo, &around, 6, lightest);
     let largest = want.values().map(|u| u.length()).fold(0.0, f64::max);

@@ -8,6 +8,8 @@ use super::constants::{GAP_STEPS, REST_CELLS_MAX};
 use super::core::Params;
 use super::obstacles::{ColliderRecord, PinRecord};
 use super::state::ParticleState;
+use super::substance::Substance;
+use crate::spec::ElasticModel;
 use glam::{DMat3, DVec3, IVec3, Mat3, Vec3};
 use std::collections::BTreeMap;
 
@@ -30,6 +32,13 @@ pub struct Surroundings<'a> {
     pub colliders: &'a [ColliderRecord],
     pub pins: &'a [PinRecord],
     pub accelerations: &'a [Vec3],
+    pub substances: &'a [Substance],
+}
+
+impl Surroundings<'_> {
+    pub fn neo_hookean(&self, state: &ParticleState) -> bool {
+        self.substances[state.substance()] == Substance::Elastic(ElasticModel::NeoHookean)
+    }
 }
 
 /// First node of a particle's stencil.
@@ -59,9 +68,10 @@ fn affine(state: &ParticleState) -> DMat3 {
 }
 
 /// `stress.wgsl`: A gets the stress of the first substep.
-pub fn stress(states: &mut [ParticleState], params: &Params, dt_s: f32) {
+pub fn stress(states: &mut [ParticleState], around: &Surroundings, dt_s: f32) {
+    let params = &around.params;
     for s in states {
-        let tau = material::kirchhoff(s.f().as_dmat3(), f64::from(s.mu_pa), f64::from(s.lambda_pa), s.tag >> 16 == 1);
+        let tau = material::kirchhoff(s.f().as_dmat3(), f64::from(s.mu_pa), f64::from(s.lambda_pa), around.neo_hookean(s));
         let weight = f64::from(dt_s) * 4.0 * f64::from(params.per_m).powi(2) * f64::from(s.volume_m3);
         s.set_affine((affine(s) - tau * weight).as_mat3());
     }
@@ -178,7 +188,7 @@ pub fn g2p(states: &mut [ParticleState], grid: &Grid, around: &Surroundings, dt_
             }
         }
         let f = (DMat3::IDENTITY + gradient * f64::from(dt_s)) * s.f().as_dmat3();
-        let tau = material::kirchhoff(f, f64::from(s.mu_pa), f64::from(s.lambda_pa), s.tag >> 16 == 1);
+        let tau = material::kirchhoff(f, f64::from(s.mu_pa), f64::from(s.lambda_pa), around.neo_hookean(s));
         let weight = f64::from(dt_next_s) * 4.0 * f64::from(params.per_m).powi(2) * f64::from(s.volume_m3);
         s.set_affine((gradient * f64::from(s.mass_kg) - tau * weight).as_mat3());
         s.set_f(f.as_mat3());

@@ -2,8 +2,8 @@
 
 use crate::solver::core::Solver;
 use crate::solver::state::ParticleState;
+use crate::solver::substance::Substance;
 use crate::solver::types::{Particles, SolverError};
-use crate::spec::ElasticModel;
 use glam::{DVec3, Vec3};
 
 /// A box filled at a spacing, 1000 kg/m^3, fixed corotated.
@@ -25,7 +25,8 @@ pub(in crate::solver) fn block(low_m: Vec3, size_m: Vec3, spacing_m: f32, young_
         density_kg_m3: vec![1000.0; n],
         young_pa: vec![young_pa; n],
         poisson: vec![poisson; n],
-        model: vec![ElasticModel::Corotated; n],
+        substance: vec![0; n],
+        substances: vec![Substance::default()],
         object: vec![0; n],
     }
 }

@@ -34,7 +34,7 @@ pub(in crate::solver) fn stems(young_pa: f32) -> Particles {
     body.density_kg_m3.truncate(n);
     body.young_pa.truncate(n);
     body.poisson.truncate(n);
-    body.model.truncate(n);
+    body.substance.truncate(n);
     body.object.truncate(n);
     body
 }
