@@ -14,17 +14,25 @@ fn holds(name: &str) -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-#[test]
-fn a_cantilever_bends_as_timoshenko_says() -> Result<(), Box<dyn std::error::Error>> {
-    holds("V5")
+/// A test for each case that is named, and one that none is left out.
+macro_rules! long_cases {
+    ($($test:ident: $name:literal;)*) => {
+        $(#[test]
+        fn $test() -> Result<(), Box<dyn std::error::Error>> {
+            holds($name)
+        })*
+
+        #[test]
+        fn every_long_case_is_run() {
+            let listed = [$($name),*];
+            let missing: Vec<_> = CASES.iter().filter(|c| !c.quick && !listed.contains(&c.name)).map(|c| c.name).collect();
+            assert!(missing.is_empty(), "no test runs {missing:?}");
+        }
+    };
 }
 
-#[test]
-fn what_was_captured_standing_stays_as_it_stands() -> Result<(), Box<dyn std::error::Error>> {
-    holds("left alone")
-}
-
-#[test]
-fn what_is_dropped_bends_and_comes_back() -> Result<(), Box<dyn std::error::Error>> {
-    holds("dropped")
+long_cases! {
+    a_cantilever_bends_as_timoshenko_says: "V5";
+    what_was_captured_standing_stays_as_it_stands: "left alone";
+    what_is_dropped_bends_and_comes_back: "dropped";
 }

@@ -26,6 +26,7 @@ mod still;
 mod store;
 mod text;
 mod undo;
+mod validate;
 mod view;
 
 use clap::{Parser, Subcommand};
@@ -78,6 +79,8 @@ enum Command {
     Golden(golden::Arguments),
     /// Look at versions: turn, play, compare
     View(view::Arguments),
+    /// The solver against formulas and published data, on this device
+    Validate(validate::Arguments),
     /// How fast this device is
     Bench(bench::Arguments),
     /// What this machine offers, and what to do where something is missing
@@ -132,6 +135,7 @@ fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Still(arguments) => still::run(arguments, flags),
         Command::Golden(arguments) => golden::run(arguments, flags),
         Command::View(arguments) => view::run(arguments, flags),
+        Command::Validate(arguments) => validate::run(arguments, flags),
         Command::Bench(arguments) => bench::run(arguments, flags),
         Command::Doctor => doctor::run(flags),
         Command::Schema(arguments) => schema::run(arguments),

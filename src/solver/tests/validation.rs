@@ -14,32 +14,28 @@ fn holds(name: &str) {
     }
 }
 
-#[test]
-fn v1_free_fall() {
-    holds("V1");
+/// A test for each case that is named, and one that none is left out.
+macro_rules! quick_cases {
+    ($($test:ident: $name:literal;)*) => {
+        $(#[test]
+        fn $test() {
+            holds($name);
+        })*
+
+        #[test]
+        fn every_quick_case_is_run() {
+            let listed = [$($name),*];
+            let missing: Vec<_> = CASES.iter().filter(|c| c.quick && !listed.contains(&c.name)).map(|c| c.name).collect();
+            assert!(missing.is_empty(), "no test runs {missing:?}");
+        }
+    };
 }
 
-#[test]
-fn v2_momentum() {
-    holds("V2");
-}
-
-#[test]
-fn v3_angular_momentum() {
-    holds("V3");
-}
-
-#[test]
-fn v4_spinning_rod() {
-    holds("V4");
-}
-
-#[test]
-fn v7_column() {
-    holds("V7");
-}
-
-#[test]
-fn v26_same_bits() {
-    holds("V26");
+quick_cases! {
+    v1_free_fall: "V1";
+    v2_momentum: "V2";
+    v3_angular_momentum: "V3";
+    v4_spinning_rod: "V4";
+    v7_column: "V7";
+    v26_same_bits: "V26";
 }

@@ -1,14 +1,13 @@
 //! Bodies under their own weight: V5 and V7.
 
-use super::Check;
 use super::bodies::{block, mean_of};
+use super::{Check, Plot};
 use crate::Stop;
 use crate::gpu::Gpu;
 use crate::solver::core::Solver;
 use crate::solver::types::{Particles, PinRegion, Settings, SolverError};
 use crate::spec::{ColliderShape, PlaneShape};
 use glam::Vec3;
-use serde::Serialize;
 
 const CELL_M: f32 = 0.05;
 const SPACING_M: f32 = 0.025;
@@ -47,14 +46,13 @@ fn mean_over(
 const BEAM: (f64, f64, f64, f64) = (1.2, 0.2, 0.05, 3e7);
 
 /// Deflection of a cantilever under its weight at one place.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct BeamPoint {
+struct BeamPoint {
     /// From the clamp.
-    pub x_m: f64,
+    x_m: f64,
     /// By the solver, downwards.
-    pub measured_m: f64,
+    measured_m: f64,
     /// By Timoshenko's beam.
-    pub expected_m: f64,
+    expected_m: f64,
 }
 
 /// Timoshenko: w q/(24 E I) (6 L^2 - 4 L x + x^2) x^2 for bending, and q / (k G A) (L x - x^2/2) for
@@ -67,7 +65,7 @@ fn timoshenko_m(x: f64) -> f64 {
 }
 
 /// Deflection along a cantilever of four cells' height, from clamp to tip.
-pub fn cantilever_curve(gpu: &Gpu) -> Result<Vec<BeamPoint>, SolverError> {
+fn cantilever_curve(gpu: &Gpu) -> Result<Vec<BeamPoint>, SolverError> {
     let (l, h, b, e) = BEAM;
     // The clamp holds two more cells of the beam.
     let held_m = 2.0 * CELL_M;
@@ -93,8 +91,20 @@ pub fn cantilever_curve(gpu: &Gpu) -> Result<Vec<BeamPoint>, SolverError> {
 /// V5: the tip of a cantilever.
 pub(super) fn cantilever(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let curve = cantilever_curve(gpu)?;
+    let Some(tip) = curve.last() else { return Ok(Vec::new()) };
+    let plot = Plot {
+        caption:
+            "Deflection of a cantilever under its own weight: the line is Timoshenko's, the dots the solver's, with four cells across the height"
+                .to_owned(),
+        x: "distance from the clamp, m",
+        y: "deflection, mm",
+        expected: curve.iter().map(|p| [p.x_m, 1e3 * p.expected_m]).collect(),
+        measured: curve.iter().map(|p| [p.x_m, 1e3 * p.measured_m]).collect(),
+    };
+    let farthest = curve.iter().map(|p| (p.measured_m - p.expected_m).abs()).fold(0.0, f64::max) / tip.expected_m;
     let check = Check::new("V5 cantilever tip", "q L^4 / (8 E I) + q L^2 / (2 k G A)", "Timoshenko, k = 5/6", "m");
-    Ok(curve.last().map(|tip| check.compare(tip.expected_m, tip.measured_m, 0.05)).into_iter().collect())
+    let along = Check::new("V5 cantilever, whole length", "farthest from the line, as a share of the tip's", "Timoshenko, k = 5/6", "");
+    Ok(vec![check.compare(tip.expected_m, tip.measured_m, 0.05).with_plot(plot), along.compare(0.0, farthest, 0.05)])
 }
 
 /// V7: how a column that stands under its own weight, free sideways with nu = 0, shortens between two

@@ -6,8 +6,6 @@ mod free;
 mod loaded;
 mod repeat;
 
-pub use loaded::{BeamPoint, cantilever_curve};
-
 #[cfg(test)]
 pub(super) use bodies::block;
 #[cfg(test)]
@@ -16,6 +14,21 @@ pub(super) use captured::stems;
 use super::types::SolverError;
 use crate::gpu::Gpu;
 use serde::Serialize;
+
+/// A measured curve beside the expected one, for a page.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plot {
+    /// What is shown, in a sentence.
+    pub caption: String,
+    /// What the horizontal axis counts, with its unit.
+    pub x: &'static str,
+    /// What the vertical axis counts, with its unit.
+    pub y: &'static str,
+    /// The formula, or the published data.
+    pub expected: Vec<[f64; 2]>,
+    /// The solver.
+    pub measured: Vec<[f64; 2]>,
+}
 
 /// One comparison.
 #[derive(Clone, Debug, Serialize)]
@@ -36,11 +49,14 @@ pub struct Check {
     pub unit: &'static str,
     /// Whether they agree.
     pub held: bool,
+    /// The whole course, where one number is only its end.
+    #[serde(skip)]
+    pub plot: Option<Plot>,
 }
 
 impl Check {
     fn new(name: &'static str, formula: &'static str, source: &'static str, unit: &'static str) -> Check {
-        Check { name, formula, source, expected: 0.0, measured: f64::NAN, tolerance: 0.0, unit, held: false }
+        Check { name, formula, source, expected: 0.0, measured: f64::NAN, tolerance: 0.0, unit, held: false, plot: None }
     }
 
     /// Compares; a number that is none never holds.
@@ -48,13 +64,18 @@ impl Check {
         let scale = if expected == 0.0 { 1.0 } else { expected.abs() };
         Check { expected, measured, tolerance, held: (measured - expected).abs() <= tolerance * scale, ..self }
     }
+
+    /// Adds the course that the number is taken from.
+    fn with_plot(self, plot: Plot) -> Check {
+        Check { plot: Some(plot), ..self }
+    }
 }
 
 /// A case: its name, and what runs it.
 pub struct Case {
     /// Names of its checks begin with this.
     pub name: &'static str,
-    /// Seconds to minutes on a software adapter where false.
+    /// Seconds on a software adapter; minutes where false.
     pub quick: bool,
     run: fn(&Gpu) -> Result<Vec<Check>, SolverError>,
 }
@@ -67,7 +88,7 @@ impl Case {
 }
 
 /// Every case, in order.
-pub const CASES: [Case; 9] = [
+pub const CASES: &[Case] = &[
     Case { name: "V1", quick: true, run: free::fall },
     Case { name: "V2", quick: true, run: free::momentum },
     Case { name: "V3", quick: true, run: free::angular_momentum },
