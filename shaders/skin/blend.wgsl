@@ -4,6 +4,8 @@
 struct Immediates {
     origin: vec3<f32>,
     count: u32,
+    // Between the particles that a Gaussian follows at rest.
+    span_m: f32,
 }
 var<immediate> params: Immediates;
 
@@ -21,7 +23,44 @@ fn weighed(sum: Delta, i: u32, w: f32) -> Delta {
     return Delta(sum.x + w * d.x, sum.y + w * d.y, sum.z + w * d.z);
 }
 
-fn blended(slot: u32) -> Delta {
+/// How far apart, squared, four particles and the nearest one carry a centre.
+fn apart2(i: vec4<u32>, centre: vec3<f32>, there: vec3<f32>) -> vec4<f32> {
+    let x = moved_by(delta[i.x], centre) - there;
+    let y = moved_by(delta[i.y], centre) - there;
+    let z = moved_by(delta[i.z], centre) - there;
+    let w = moved_by(delta[i.w], centre) - there;
+    return vec4(dot(x, x), dot(y, y), dot(z, z), dot(w, w));
+}
+
+/// Weights of particles that went elsewhere fade out: what breaks, pours or crumbles takes its
+/// Gaussians along instead of spanning the gap with them. Whole motion, affine above all, is not touched.
+fn together(slot: u32, whole: Delta, centre: vec3<f32>) -> Delta {
+    let low2 = PART_LOW * PART_LOW * params.span_m * params.span_m;
+    let there = moved_by(delta[particle[slot * VECTORS].x], centre);
+    var widest = 0.0;
+    for (var v = 0u; v < VECTORS; v++) {
+        let apart = select(vec4(0.0), apart2(particle[slot * VECTORS + v], centre, there), weight[slot * VECTORS + v] > vec4(0.0));
+        widest = max(widest, max(max(apart.x, apart.y), max(apart.z, apart.w)));
+    }
+    if widest <= low2 {
+        return whole;
+    }
+    var sum = zero_delta();
+    var total = 0.0;
+    for (var v = 0u; v < VECTORS; v++) {
+        let i = particle[slot * VECTORS + v];
+        let apart = sqrt(apart2(i, centre, there)) / params.span_m;
+        let w = weight[slot * VECTORS + v] * (1.0 - smoothstep(vec4(PART_LOW), vec4(PART_HIGH), apart));
+        total += w.x + w.y + w.z + w.w;
+        sum = weighed(sum, i.x, w.x);
+        sum = weighed(sum, i.y, w.y);
+        sum = weighed(sum, i.z, w.z);
+        sum = weighed(sum, i.w, w.w);
+    }
+    return Delta(sum.x / total, sum.y / total, sum.z / total);
+}
+
+fn blended(slot: u32, centre: vec3<f32>) -> Delta {
     var sum = zero_delta();
     for (var v = 0u; v < VECTORS; v++) {
         let i = particle[slot * VECTORS + v];
@@ -30,6 +69,9 @@ fn blended(slot: u32) -> Delta {
         sum = weighed(sum, i.y, w.y);
         sum = weighed(sum, i.z, w.z);
         sum = weighed(sum, i.w, w.w);
+    }
+    if !PAPER && is_finite(sum) {
+        sum = together(slot, sum, centre);
     }
     if !is_finite(sum) {
         sum = delta[particle[slot * VECTORS].x];
@@ -65,8 +107,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
         return;
     }
     let at = moving[slot] * 4u;
-    let d = blended(slot);
     let centre = rest[at];
+    let d = blended(slot, centre.xyz - params.origin);
     var a = rest[at + 1u];
     var b = rest[at + 2u];
     var turn = rest[at + 3u];

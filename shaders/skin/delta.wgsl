@@ -3,6 +3,7 @@
 struct Immediates {
     origin: vec3<f32>,
     count: u32,
+    span_m: f32,
 }
 var<immediate> params: Immediates;
 

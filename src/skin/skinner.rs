@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Version of what skinning computes; part of the keys of pictures.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Threads of a workgroup.
 const GROUP_SIZE: u32 = 128;
@@ -18,6 +18,11 @@ pub const STRETCH: [f32; 2] = [0.3, 3.0];
 
 /// Below this determinant a blended gradient has no rotation worth the name.
 pub const SMALLEST_DETERMINANT: f32 = 1e-3;
+
+/// Particles that carry a Gaussian's centre this far from where its nearest one does, in spans, begin
+/// to lose it, and at the second number have lost it. A span is what lies between the particles that a
+/// Gaussian follows at rest.
+pub const PART: [f32; 2] = [0.75, 1.5];
 
 /// Newton steps at most; 6 suffice for stretches within [`STRETCH`], 14 for [`SMALLEST_DETERMINANT`].
 pub const POLAR_STEPS: u32 = 16;
@@ -31,6 +36,8 @@ pub const JACOBI_SWEEPS: u32 = 4;
 struct Immediates {
     origin: [f32; 3],
     count: u32,
+    span_m: f32,
+    padding: [u32; 3],
 }
 
 /// Moves the Gaussians of one scene. At rest what it writes equals `Splats::rest` bit for bit.
@@ -52,6 +59,7 @@ impl Skinner {
     pub fn new(gpu: &Gpu, splats: &Splats, bound: &Bound, rest_particles: &[Vec3], weights: Weights) -> Result<Skinner, GpuError> {
         let packed = Packed::new(bound);
         let origin = centre(rest_particles);
+        let shared = Immediates { origin: origin.to_array(), count: 0, span_m: span_m(bound, rest_particles), padding: [0; 3] };
         let relative: Vec<[f32; 4]> = rest_particles.iter().map(|&p| (p - origin).extend(0.0).to_array()).collect();
         let deltas = gpu.storage::<[f32; 12]>("skin.deltas", rest_particles.len())?;
         let blend = gpu.kernel(&blend_source(packed.vectors, weights));
@@ -65,8 +73,8 @@ impl Skinner {
             blend,
             rest_particles: gpu.storage_from("skin.rest_particles", &relative)?,
             deltas,
-            particles: Immediates { origin: origin.to_array(), count: rest_particles.len() as u32 },
-            gaussians: Immediates { origin: origin.to_array(), count: packed.moving.len() as u32 },
+            particles: Immediates { count: rest_particles.len() as u32, ..shared },
+            gaussians: Immediates { count: packed.moving.len() as u32, ..shared },
             gpu: gpu.clone(),
         })
     }
@@ -117,6 +125,16 @@ pub(super) fn centre(points: &[Vec3]) -> Vec3 {
     (sum / points.len().max(1) as f64).as_vec3()
 }
 
+/// Median distance at rest between the nearest and the farthest particle that a Gaussian follows, metres.
+pub(super) fn span_m(bound: &Bound, rest_particles: &[Vec3]) -> f32 {
+    let k = bound.neighbours.max(1) as usize;
+    let followed = bound.index.chunks_exact(k).filter(|index| index[0] != STATIC);
+    let between = |index: &[u32]| index.iter().map(|&i| rest_particles[i as usize].distance(rest_particles[index[0] as usize])).fold(0.0, f32::max);
+    let mut spans: Vec<f32> = followed.map(between).collect();
+    let middle = spans.len() / 2;
+    if spans.is_empty() { 0.0 } else { spans.select_nth_unstable_by(middle, f32::total_cmp).1.max(f32::MIN_POSITIVE) }
+}
+
 /// Workgroups for `count` threads, folded into two dimensions where one has not enough.
 fn groups(count: u32) -> [u32; 3] {
     let groups = count.div_ceil(GROUP_SIZE);
@@ -149,6 +167,8 @@ fn blend_source(vectors: u32, weights: Weights) -> KernelSource {
             ("GROUP_SIZE", Constant::U32(GROUP_SIZE)),
             ("VECTORS", Constant::U32(vectors)),
             ("PAPER", Constant::Bool(weights == Weights::Paper)),
+            ("PART_LOW", Constant::F32(PART[0])),
+            ("PART_HIGH", Constant::F32(PART[1])),
             ("STRETCH_LOW", Constant::F32(STRETCH[0])),
             ("STRETCH_HIGH", Constant::F32(STRETCH[1])),
             ("SMALLEST_DETERMINANT", Constant::F32(SMALLEST_DETERMINANT)),

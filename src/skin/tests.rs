@@ -1,7 +1,7 @@
 //! V27: skinning under rigid and affine motion, at rest, and where the motion is broken; the
 //! device against the twin.
 
-use super::skinner::{SMALLEST_DETERMINANT, centre};
+use super::skinner::{PART, SMALLEST_DETERMINANT, centre, span_m};
 use super::*;
 use crate::gpu::{Gpu, Recording};
 use crate::scene::{Gaussians, morton_order};
@@ -68,7 +68,11 @@ impl Body {
     fn on_twin(&self, bound: &Bound, weights: Weights, motion: &[[u32; 8]]) -> Vec<[f32; 16]> {
         let origin = centre(&self.particles);
         let deltas: Vec<_> = motion.iter().zip(&self.particles).map(|(&m, &p)| twin::delta(m, p, origin, weights)).collect();
-        self.rest().iter().enumerate().map(|(g, rest)| twin::blend(rest, g, bound, &deltas, origin, weights)).collect()
+        self.rest().iter().enumerate().map(|(g, rest)| twin::blend(rest, g, bound, &deltas, self.frame(bound), weights)).collect()
+    }
+
+    fn frame(&self, bound: &Bound) -> twin::Frame {
+        twin::Frame { origin: centre(&self.particles), span_m: span_m(bound, &self.particles) }
     }
 
     /// Every particle carried by x -> a x + b.
@@ -135,7 +139,7 @@ fn v27_any_rotation_is_exact() {
         let axis = Vec3::new(noise(i, 20) - 0.5, noise(i, 21) - 0.5, noise(i, 22) - 0.5).normalize();
         let (a, b) = (Mat3::from_axis_angle(axis, 0.55 * i as f32), Vec3::new(noise(i, 23), 0.0, -1.0));
         let deltas: Vec<_> = body.particles.iter().map(|&p| twin::of(a * p + b, a - Mat3::IDENTITY, p, origin, Weights::Exact)).collect();
-        let drawn: Vec<_> = (0..rest.len()).map(|g| twin::blend(&rest[g], g, &bound, &deltas, origin, Weights::Exact)).collect();
+        let drawn: Vec<_> = (0..rest.len()).map(|g| twin::blend(&rest[g], g, &bound, &deltas, body.frame(&bound), Weights::Exact)).collect();
         check_affine(&body, &drawn, a, b);
     }
 }
@@ -205,6 +209,28 @@ fn the_device_agrees_with_the_twin() {
         let allowed = [2e-6, 2e-7, 2e-5];
         assert!(differences.iter().zip(allowed).all(|(d, a)| *d < a), "{weights:?} K = {k}: {differences:?} of {allowed:?}");
     }
+}
+
+/// Cut in two, one half carried away: no Gaussian is left hanging between, and far from the cut all
+/// goes as before.
+#[test]
+fn what_parts_takes_its_gaussians_along() {
+    let body = body();
+    let bound = body.bound(8, Weights::Exact);
+    let away = Vec3::new(0.5, 0.0, 0.2);
+    let cut_x = PLACE.x + 0.13;
+    let shift = |p: Vec3| if p.x > cut_x { away } else { Vec3::ZERO };
+    let motion: Vec<_> = body.particles.iter().map(|&p| twin::pack_motion(p + shift(p), Mat3::ZERO)).collect();
+    let drawn = body.on_device(&bound, Weights::Exact, &motion);
+    let rest = body.rest();
+    for g in (0..rest.len()).filter(|&g| body.object[g] != STATIC) {
+        let moved = Vec3::from_slice(&drawn[g]) - Vec3::from_slice(&rest[g]);
+        let nearest = body.particles[bound.index[g * 8] as usize];
+        assert!((moved - shift(nearest)).length() < 2e-6, "Gaussian {g} moved by {moved}");
+    }
+    assert!(away.length() > PART[1] * span_m(&bound, &body.particles));
+    let twin = body.on_twin(&bound, Weights::Exact, &motion);
+    assert!(largest_difference(&drawn, &twin, 0..16) < 2e-6);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Skinning in plain Rust: what the two passes compute, one particle or Gaussian at a time.
 
-use super::skinner::{POLAR_STEPS, SMALLEST_DETERMINANT, STRETCH};
+use super::skinner::{PART, POLAR_STEPS, SMALLEST_DETERMINANT, STRETCH};
 use super::{Bound, STATIC};
 use crate::spec::Weights;
 use glam::{Mat3, Quat, Vec3};
@@ -19,9 +19,28 @@ impl Delta {
     /// Rest.
     pub const ZERO: Delta = Delta { linear: Mat3::ZERO, offset: Vec3::ZERO };
 
+    /// Where a point goes, less the point; `point` is relative to the origin.
+    fn carry(self, point: Vec3) -> Vec3 {
+        self.offset + self.linear * point
+    }
+
     fn is_finite(self) -> bool {
         self.linear.is_finite() && self.offset.is_finite()
     }
+}
+
+/// What the deltas of a scene are relative to.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// Metres, world.
+    pub origin: Vec3,
+    /// Metres.
+    pub span_m: f32,
+}
+
+fn smoothstep([low, high]: [f32; 2], value: f32) -> f32 {
+    let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
 }
 
 /// The eight words in which the solver gives a particle's motion: its position as f32, then G - I as
@@ -51,7 +70,11 @@ pub fn of(position: Vec3, linear: Mat3, rest: Vec3, origin: Vec3, weights: Weigh
 }
 
 /// Pass `skin.blend`: the record of one Gaussian (see [`super::Splats`]) from its rest's record.
-pub fn blend(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta], origin: Vec3, weights: Weights) -> [f32; 16] {
+///
+/// `frame` has the point that deltas are relative to, and the span within which particles carry a
+/// Gaussian together (see [`super::skinner::PART`]).
+pub fn blend(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta], frame: Frame, weights: Weights) -> [f32; 16] {
+    let origin = frame.origin;
     let k = bound.neighbours as usize;
     let index = &bound.index[gaussian * k..(gaussian + 1) * k];
     let weight = &bound.weight[gaussian * k..(gaussian + 1) * k];
@@ -59,10 +82,23 @@ pub fn blend(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta],
         return *rest;
     }
     let nearest = deltas[index[0] as usize];
-    let sum = index.iter().zip(weight).fold(Delta::ZERO, |sum, (&i, &w)| {
-        let d = deltas[i as usize];
-        Delta { linear: sum.linear + d.linear * w, offset: sum.offset + d.offset * w }
-    });
+    let weighed = |weight: &[f32]| {
+        index.iter().zip(weight).fold(Delta::ZERO, |sum, (&i, &w)| {
+            let d = deltas[i as usize];
+            Delta { linear: sum.linear + d.linear * w, offset: sum.offset + d.offset * w }
+        })
+    };
+    let mut sum = weighed(weight);
+    if weights == Weights::Exact && sum.is_finite() {
+        let c = Vec3::from_slice(rest) - origin;
+        let spans = |i: u32| (deltas[i as usize].carry(c) - nearest.carry(c)).length() / frame.span_m;
+        if index.iter().zip(weight).any(|(&i, &w)| w > 0.0 && spans(i) > PART[0]) {
+            let kept: Vec<f32> = index.iter().zip(weight).map(|(&i, w)| w * (1.0 - smoothstep(PART, spans(i)))).collect();
+            let total: f32 = kept.iter().sum();
+            let part = weighed(&kept);
+            sum = Delta { linear: part.linear * (1.0 / total), offset: part.offset / total };
+        }
+    }
     let d = [sum, nearest].into_iter().find(|d| d.is_finite()).unwrap_or(Delta::ZERO);
     let mut record = *rest;
     let centre = Vec3::from_slice(rest);
