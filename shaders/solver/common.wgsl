@@ -32,6 +32,8 @@ struct Params {
     momentum_floor: f32,
     // Bits of the largest measure of momentum in fixed point.
     momentum_bits: u32,
+    // Number of the segment's first substep.
+    first_substep: u32,
 }
 
 // Offset in nodes of one axis' coordinate within the block-linear storage; the three axes add up.

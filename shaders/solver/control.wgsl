@@ -25,6 +25,8 @@ struct Control {
     high_z: atomic<i32>,
     // Bits of the largest speed at the end of the segment.
     final_speed: atomic<u32>,
+    // Bits of the fastest wave's speed at the end of the segment.
+    wave_speed: atomic<u32>,
 }
 
 // Power of two that brings momenta up to `largest` to `momentum_bits`.

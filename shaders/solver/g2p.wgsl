@@ -41,20 +41,22 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     }
 
     let old = read_deformation(i);
-    let f = old + substep.dt_s * (gradient * old);
-    let substance = substances[row_of(object)];
-    let tau = kirchhoff(f, matter[i].w, matter[n + i].w, substance.model == 1u);
+    let row = row_of(object);
+    let substance = substances[row];
+    let flow = Flow(substep.dt_s, gradient, activation(row, substep.index + 1u));
+    let answer = respond(substance, old + substep.dt_s * (gradient * old), tag.w, matter[i].w, matter[n + i].w, flow);
     let weight = substep.dt_next_s * 4.0 * params.per_m * params.per_m * matter[2u * n + i].w;
-    let affine = position.w * gradient - weight * tau;
+    let affine = position.w * gradient - weight * answer.tau;
     let momentum = momentum_measure(position.w, v, affine);
     let speed = length(v);
     if (id.x < n) {
         kinematics[i] = vec4<f32>(x, position.w);
         write_motion(i, v, affine);
-        let rows = transpose(f);
+        let rows = transpose(answer.f);
         matter[i] = vec4<f32>(rows[0], matter[i].w);
         matter[n + i] = vec4<f32>(rows[1], matter[n + i].w);
         matter[2u * n + i] = vec4<f32>(rows[2], matter[2u * n + i].w);
+        remember(i, substance, answer, flow);
     }
     // Bits of floats that are not negative are ordered as they are; those of a NaN are above all.
     let momentum_most = subgroupMax(bitcast<u32>(momentum) & 0x7fffffffu);

@@ -1,9 +1,10 @@
-// End of a segment: bounds, speed, volume change, and whether all is finite.
+// End of a segment: bounds, speeds, volume change, and whether all is finite.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> control: Control;
+@group(0) @binding(4) var<storage, read> substances: array<Substance>;
 
 // Bits in the order of the values they stand for.
 fn ordered(value: f32) -> u32 {
@@ -22,7 +23,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let v = kinematics[n + i].xyz;
     let f = read_deformation(i);
     let j = determinant(f);
-    let object = bitcast<u32>(matter[3u * n + i].y) & 31u;
+    let tag = matter[3u * n + i];
+    let object = bitcast<u32>(tag.y) & 31u;
     if (!(finite3(x) && finite3(v) && finite3(f[0]) && finite3(f[1]) && finite3(f[2]) && finite(j))) {
         atomicAdd(&control.nonfinite, 1u);
         atomicOr(&control.suspects, 1u << object);
@@ -41,4 +43,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     atomicMin(&control.j_low, ordered(j));
     atomicMax(&control.j_high, ordered(j));
     atomicMax(&control.final_speed, bitcast<u32>(length(v)));
+    let modulus = wave_modulus(substances[row_of(bitcast<u32>(tag.y))], tag.w, matter[i].w, matter[n + i].w);
+    atomicMax(&control.wave_speed, bitcast<u32>(sqrt(modulus * matter[2u * n + i].w / kinematics[i].w)));
 }

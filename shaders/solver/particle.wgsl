@@ -4,8 +4,9 @@
 //     A = mass C - dt (4 / cell^2) volume tau moves momentum to a node at distance d as A d.
 //     Between segments A = mass C alone, so that state does not depend on the next step's length.
 // matter: (F row 0, mu), (F row 1, lambda), (F row 2, volume),
-//     (original index, tag, rest offset, weight ratio of the prestress), integers as bits; the tag is
-//     the object in its lower half, the row of the substance in its upper.
+//     (original index, tag, rest offset, history), integers as bits; the tag is the object in its
+//     lower half, the row of the substance in its upper; the history is what the particle's law
+//     remembers beside F. The prestress, which no law remembers, keeps mass over pseudo mass there.
 
 fn read_affine(i: u32) -> mat3x3<f32> {
     let n = params.count;

@@ -34,10 +34,10 @@ fn linear_strain(tau: mat3x3<f32>, mu: f32, lambda: f32) -> mat3x3<f32> {
 }
 
 // Stretch that carries a stress, from one that carries nearly that: the linear compliance, repeated.
-fn carry(start: mat3x3<f32>, wanted: mat3x3<f32>, mu: f32, lambda: f32, neo_hookean: bool) -> mat3x3<f32> {
+fn carry(start: mat3x3<f32>, wanted: mat3x3<f32>, mu: f32, lambda: f32, s: Substance) -> mat3x3<f32> {
     var f = start;
     for (var k = 0u; k < CARRY_STEPS; k++) {
-        f += CARRY_SHARE * linear_strain(wanted - kirchhoff(f, mu, lambda, neo_hookean), mu, lambda);
+        f += CARRY_SHARE * linear_strain(wanted - resting_stress(s, f, mu, lambda), mu, lambda);
     }
     return f;
 }
@@ -58,10 +58,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let adopt = steer(substep.job, params.count) == ADOPT;
     var tau = linear_stress(0.5 * (gradient + transpose(gradient)), mu, lambda);
     if (adopt && takes_part) {
-        let neo_hookean = substances[row_of(bitcast<u32>(matter[3u * n + i].y))].model == 1u;
+        let s = substances[row_of(bitcast<u32>(matter[3u * n + i].y))];
         let old = read_deformation(i);
-        let f = carry(old, kirchhoff(old, mu, lambda, neo_hookean) + tau, mu, lambda, neo_hookean);
-        tau = kirchhoff(f, mu, lambda, neo_hookean);
+        let f = carry(old, resting_stress(s, old, mu, lambda) + tau, mu, lambda, s);
+        tau = resting_stress(s, f, mu, lambda);
         if (id.x < n) {
             let rows = transpose(f);
             matter[i] = vec4<f32>(rows[0], mu);

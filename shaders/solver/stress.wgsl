@@ -15,9 +15,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let i = id.x;
     let n = params.count;
-    let f = read_deformation(i);
-    let substance = substances[row_of(bitcast<u32>(matter[3u * n + i].y))];
-    let tau = kirchhoff(f, matter[i].w, matter[n + i].w, substance.model == 1u);
+    let row = row_of(bitcast<u32>(matter[3u * n + i].y));
+    // Before the stress is added A is mass times the gradient of velocity.
+    let gradient = read_affine(i) * (1.0 / max(kinematics[i].w, 1e-30));
+    let flow = Flow(0.0, gradient, activation(row, substep.index));
+    let tau = respond(substances[row], read_deformation(i), matter[3u * n + i].w, matter[i].w, matter[n + i].w, flow).tau;
     let weight = substep.dt_next_s * 4.0 * params.per_m * params.per_m * matter[2u * n + i].w;
     let affine = read_affine(i) - weight * tau;
     let v = kinematics[n + i].xyz;

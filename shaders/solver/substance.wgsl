@@ -4,11 +4,53 @@
 struct Substance {
     // ELASTIC and so on.
     kind: u32,
-    // Of an elastic one: 1 neo-Hookean, 0 fixed corotated.
+    // Of what is elastic: 1 neo-Hookean, 0 fixed corotated.
     model: u32,
+    // Bounds of the stretch that its Gaussians show; the upper one is 0 where they show F.
+    shown_least: f32,
+    shown_most: f32,
+    // The law's own numbers, in the order of `src/solver/substance.rs`.
     values: array<f32, 6>,
 }
 
 fn row_of(tag: u32) -> u32 {
     return tag >> 16u;
+}
+
+// How a substep deforms a particle.
+struct Flow {
+    // 0 where nothing but the stress of a present state is asked for.
+    dt_s: f32,
+    // Of velocity, 1/s.
+    gradient: mat3x3<f32>,
+    // Of a muscle, 0 to 1.
+    activation: f32,
+}
+
+// What the law makes of a trial F: the elastic part that stays, what it remembers, its Kirchhoff stress.
+struct Answer {
+    f: mat3x3<f32>,
+    history: f32,
+    tau: mat3x3<f32>,
+}
+
+// Young's modulus from Lame's two.
+fn young(mu: f32, lambda: f32) -> f32 {
+    return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+}
+
+// What compression waves run on: lambda + 2 mu, more where a law stiffens.
+fn wave_modulus(s: Substance, history: f32, mu: f32, lambda: f32) -> f32 {
+    let passive = lambda + 2.0 * mu;
+    switch (s.kind) {
+        case SNOW: { return passive * snow_stiffening(s, history); }
+        // A fibre that pulls with E a adds as much to the stiffness along it; a is at most 1.
+        case MUSCLE: { return passive + young(mu, lambda); }
+        default: { return passive; }
+    }
+}
+
+// Stomakhin et al. 2013: what is packed is stiffer. `packing` is the plastic part of det F.
+fn snow_stiffening(s: Substance, packing: f32) -> f32 {
+    return exp(s.values[2] * (1.0 - packing));
 }

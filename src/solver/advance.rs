@@ -35,6 +35,15 @@ pub(super) struct Plan {
 }
 
 impl Plan {
+    /// Seconds from the segment's start to a boundary between substeps.
+    pub fn time_s(&self, boundary: u32) -> f64 {
+        let last_s = if boundary >= self.substeps { f64::from(self.last_dt_s) } else { f64::from(self.dt_s) };
+        match boundary {
+            0 => 0.0,
+            _ => f64::from(self.dt_s) * f64::from(boundary - 1) + last_s,
+        }
+    }
+
     fn dt_of(&self, step: u32) -> f32 {
         match () {
             _ if step + 1 < self.substeps => self.dt_s,
@@ -170,7 +179,7 @@ impl Solver {
         let cell_m = f64::from(self.settings.cell_m);
         let left_s = frame_end_s - self.time_s;
         let speed_m_s = f64::from(seen.speed_m_s) + f64::from(acceleration_m_s2) * left_s;
-        let limit_s = f64::from(self.settings.cfl) * cell_m / (f64::from(self.wave_speed_m_s) + speed_m_s) / f64::from(1u32 << halvings);
+        let limit_s = f64::from(self.settings.cfl) * cell_m / (f64::from(seen.wave_speed_m_s) + speed_m_s) / f64::from(1u32 << halvings);
         let dt_s = left_s / (left_s / limit_s).ceil().max(1.0);
         let parts = (until_s - self.time_s) / dt_s;
         let whole = (parts + 1e-6).floor();
@@ -203,7 +212,7 @@ impl Solver {
 
     fn record_measure(&self, recording: &mut Recording) {
         let state = &self.buffers[self.current];
-        let bindings = self.gpu.bind(&self.passes.measure, &[&self.params_buffer, &state.kinematics, &state.matter, &self.control]);
+        let bindings = self.gpu.bind(&self.passes.measure, &[&self.params_buffer, &state.kinematics, &state.matter, &self.control, &self.laws.table]);
         recording.dispatch(&self.passes.measure, &bindings, self.particle_groups());
     }
 
@@ -215,6 +224,7 @@ impl Solver {
     /// Runs the substeps of a plan from the present state. The queue is kept full: a batch is recorded
     /// while the one before it runs.
     fn run(&mut self, plan: &Plan, stop: &Stop) -> Result<Outcome, SolverError> {
+        self.set_activations(plan)?;
         let bound = self.bind_both()?;
         self.start_segment();
         let batch = match self.gpu.tier {
@@ -246,7 +256,8 @@ impl Solver {
     }
 
     /// Uploads what the passes of a segment start from.
-    pub(super) fn start_segment(&self) {
+    pub(super) fn start_segment(&mut self) {
+        self.params.first_substep = self.substep;
         self.gpu.upload(&self.params_buffer, &[self.params]);
         self.gpu.upload(&self.control, &[Control::FRESH]);
     }
@@ -297,6 +308,10 @@ impl Solver {
         let (gpu, p, params) = (&self.gpu, &self.passes, &self.params_buffer);
         let (state, other) = (&self.buffers[current], &self.buffers[1 - current]);
         let (kinematics, matter) = (&state.kinematics, &state.matter);
+        let (laws, control) = (&self.laws, &self.control);
+        let stress = [params, kinematics, matter, control, &laws.table, &laws.activations];
+        let around = (&self.colliders_buffer, &self.objects_buffer);
+        let g2p = [params, kinematics, matter, &grid.velocity, around.0, around.1, control, &laws.table, &laws.activations, laws.shown()];
         Bound {
             active_groups: grid.active_groups.clone(),
             bin: gpu.bind(&p.bin, &[params, kinematics, &grid.cell_count, &grid.block_info, &self.control]),
@@ -306,16 +321,13 @@ impl Solver {
             scan_cells: gpu.bind(&p.scan_cells, &[params, &grid.active_blocks, &grid.block_start, &grid.cell_count, &grid.cell_start]),
             scatter: gpu.bind(&p.scatter, &[params, kinematics, matter, &grid.cell_count, &grid.cell_start, &self.slots]),
             order: gpu.bind(&p.order, &[params, &self.slots, kinematics, matter, &other.kinematics, &other.matter]),
-            stress: gpu.bind(&p.stress, &[params, kinematics, matter, &self.control, &self.substances_buffer]),
+            stress: gpu.bind(&p.stress, &stress[..if laws.all { 6 } else { 5 }]),
             p2g: gpu.bind(&p.p2g, &[params, kinematics, matter, &self.colliders_buffer, &grid.sums, &grid.marks, &self.control]),
             grid: gpu.bind(
                 &p.grid,
                 &[params, &grid.active_blocks, &self.colliders_buffer, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, &self.control],
             ),
-            g2p: gpu.bind(
-                &p.g2p,
-                &[params, kinematics, matter, &grid.velocity, &self.colliders_buffer, &self.objects_buffer, &self.control, &self.substances_buffer],
-            ),
+            g2p: gpu.bind(&p.g2p, &g2p[..if laws.all { 10 } else { 8 }]),
         }
     }
 
@@ -323,7 +335,7 @@ impl Solver {
     fn backup(&self) {
         self.copy_state(&self.buffers[self.current], &self.backup);
         let mut recording = Recording::default();
-        self.kept.iter().for_each(|k| k.keep(&mut recording));
+        self.kept().for_each(|k| k.keep(&mut recording));
         self.gpu.submit(&recording);
     }
 
@@ -336,7 +348,7 @@ impl Solver {
         for buffer in self.grid.iter().flat_map(GridBuffers::dirty) {
             recording.clear(buffer);
         }
-        self.kept.iter().for_each(|k| k.restore(&mut recording));
+        self.kept().for_each(|k| k.restore(&mut recording));
         self.gpu.submit(&recording);
     }
 

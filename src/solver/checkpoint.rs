@@ -2,6 +2,7 @@
 
 use super::core::Solver;
 use super::state::ParticleState;
+use super::substance::Substance;
 use super::types::SolverError;
 use bytemuck::{Pod, Zeroable};
 
@@ -16,6 +17,8 @@ struct Header {
     count: u32,
     substep: u32,
     time_s: f64,
+    /// Bytes of the table of substances, JSON.
+    table_bytes: u64,
 }
 
 impl Solver {
@@ -23,12 +26,15 @@ impl Solver {
     /// they are summed follows from where they are, and is found again by the next sort.
     pub fn checkpoint(&self) -> Result<Vec<u8>, SolverError> {
         let count = self.params.count;
-        let header = Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s };
+        let table = serde_json::to_vec(&self.laws.substances).map_err(|e| SolverError::Checkpoint { what: e.to_string() })?;
+        let table_bytes = table.len() as u64;
+        let header = Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s, table_bytes };
         let mut bytes = bytemuck::bytes_of(&header).to_vec();
+        bytes.extend(table);
         bytes.extend_from_slice(bytemuck::cast_slice(&self.states()?));
         let unstressed: Vec<[f32; 12]> = self.gpu.read(&self.unstressed, count as usize)?;
         bytes.extend_from_slice(bytemuck::cast_slice(&unstressed));
-        for kept in &self.kept {
+        for kept in self.kept() {
             bytes.extend(kept.read(&self.gpu)?);
         }
         Ok(bytes)
@@ -39,21 +45,33 @@ impl Solver {
         let refuse = |what: String| SolverError::Checkpoint { what };
         let count = self.params.count as usize;
         let (head, states, tail) = (size_of::<Header>(), count * size_of::<ParticleState>(), count * size_of::<[f32; 12]>());
-        let beside: usize = self.kept.iter().map(|k| k.bytes() as usize).sum();
-        let whole = head + states + tail + beside;
-        if bytes.len() != whole {
-            return Err(refuse(format!("{} bytes where {count} particles take {whole}", bytes.len())));
-        }
-        let header: Header = bytemuck::pod_read_unaligned(&bytes[..head]);
+        let Some((header, bytes)) = bytes.split_at_checked(head) else {
+            return Err(refuse(format!("{} bytes", bytes.len())));
+        };
+        let header: Header = bytemuck::pod_read_unaligned(header);
         if header.magic != MAGIC || header.version != super::VERSION || header.count as usize != count {
             return Err(refuse(format!("version {} for {} particles", header.version, header.count)));
         }
-        let particles: Vec<ParticleState> = bytemuck::pod_collect_to_vec(&bytes[head..head + states]);
-        let unstressed: Vec<[f32; 12]> = bytemuck::pod_collect_to_vec(&bytes[head + states..head + states + tail]);
+        let Some((table, bytes)) = bytes.split_at_checked(header.table_bytes as usize) else {
+            return Err(refuse(format!("{} bytes, of which {} are a table", bytes.len(), header.table_bytes)));
+        };
+        // A material may have changed since the start.
+        let table: Vec<Substance> = serde_json::from_slice(table).map_err(|e| refuse(e.to_string()))?;
+        self.set_substances(&table)?;
+        let beside: usize = self.kept().map(|k| k.bytes() as usize).sum();
+        let whole = states + tail + beside;
+        if bytes.len() != whole {
+            return Err(refuse(format!("{} bytes where {count} particles take {whole}", bytes.len())));
+        }
+        let particles: Vec<ParticleState> = bytemuck::pod_collect_to_vec(&bytes[..states]);
+        let unstressed: Vec<[f32; 12]> = bytemuck::pod_collect_to_vec(&bytes[states..states + tail]);
+        if let Some(row) = particles.iter().map(ParticleState::substance).find(|&row| row >= table.len()) {
+            return Err(refuse(format!("a particle of substance {row} of {}", table.len())));
+        }
         self.replace(&particles);
         self.gpu.upload(&self.unstressed, &unstressed);
-        let mut rest = &bytes[head + states + tail..];
-        for kept in &self.kept {
+        let mut rest = &bytes[states + tail..];
+        for kept in self.kept() {
             let (content, more) = rest.split_at(kept.bytes() as usize);
             kept.write(&self.gpu, content);
             rest = more;

@@ -1,5 +1,6 @@
 //! The solver's numbers, in one place; WGSL gets them from here.
 
+use super::substance;
 use crate::gpu::Constant;
 
 /// Threads a workgroup of the passes over particles. A multiple of every subgroup size.
@@ -54,6 +55,23 @@ pub const CARRY_SHARE: f32 = 0.6;
 /// thousandth of the heaviest particle's.
 pub const LIGHTEST: f32 = 65_536.0;
 
+/// Sweeps of the singular values, each over all three pairs of columns; most matrices take three.
+pub const SVD_SWEEPS: u32 = 6;
+/// Logarithmic laws follow stretches from this.
+pub const STRETCH_LEAST: f32 = 0.05;
+/// To this.
+pub const STRETCH_MOST: f32 = 20.0;
+/// Share of its yield stress that softening leaves.
+pub const YIELD_FLOOR: f32 = 0.01;
+/// ln of the volume that sand takes up while loose, at most: what flew apart farther does not come
+/// together as one.
+pub const LOOSE_MOST: f32 = 0.4;
+/// Packing of snow, det of the plastic part of F, goes no lower: packed corners would harden without
+/// limit.
+pub const PACKING_LEAST: f32 = 0.6;
+/// Nor higher.
+pub const PACKING_MOST: f32 = 20.0;
+
 /// All of them as WGSL constants.
 pub fn all() -> Vec<(&'static str, Constant)> {
     vec![
@@ -75,5 +93,19 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("CARRY_STEPS", Constant::U32(CARRY_STEPS)),
         ("CARRY_SHARE", Constant::F32(CARRY_SHARE)),
         ("SUM_LIMIT", Constant::F32(SUM_LIMIT)),
+        ("ELASTIC", Constant::U32(substance::ELASTIC)),
+        ("MUSCLE", Constant::U32(substance::MUSCLE)),
+        ("PLASTIC", Constant::U32(substance::PLASTIC)),
+        ("VISCOPLASTIC", Constant::U32(substance::VISCOPLASTIC)),
+        ("SAND", Constant::U32(substance::SAND)),
+        ("SNOW", Constant::U32(substance::SNOW)),
+        ("SVD_SWEEPS", Constant::U32(SVD_SWEEPS)),
+        ("STRETCH_LEAST", Constant::F32(STRETCH_LEAST)),
+        ("STRETCH_MOST", Constant::F32(STRETCH_MOST)),
+        ("YIELD_FLOOR", Constant::F32(YIELD_FLOOR)),
+        ("SQRT_2_3", Constant::F32(0.816_496_6)),
+        ("LOOSE_MOST", Constant::F32(LOOSE_MOST)),
+        ("PACKING_LEAST", Constant::F32(PACKING_LEAST)),
+        ("PACKING_MOST", Constant::F32(PACKING_MOST)),
     ]
 }

@@ -3,10 +3,10 @@
 use super::constants::{FIXED_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
 use super::grid::{GridBuffers, Window, allowed_blocks};
 use super::kept::Kept;
+use super::laws::{Laws, rows};
 use super::obstacles::{self, PinRecord};
 use super::passes::Passes;
 use super::state::{self, ParticleState, StateBuffers};
-use super::substance::{self, Substance};
 use super::types::{Particles, Placement, Settings, SolverError};
 use super::watch::{Control, Watch};
 use crate::gpu::{Gpu, Recording};
@@ -33,7 +33,8 @@ pub(super) struct Params {
     pub seed: u32,
     pub momentum_floor: f32,
     pub momentum_bits: u32,
-    pub padding: [u32; 3],
+    pub first_substep: u32,
+    pub padding: [u32; 2],
 }
 
 #[repr(C)]
@@ -57,16 +58,14 @@ pub struct Solver {
     pub(super) colliders_buffer: wgpu::Buffer,
     pub(super) pins_buffer: wgpu::Buffer,
     pub(super) objects_buffer: wgpu::Buffer,
-    #[cfg_attr(not(test), expect(dead_code, reason = "rows are added when a material changes"))]
-    pub(super) substances: Vec<Substance>,
-    pub(super) substances_buffer: wgpu::Buffer,
+    pub(super) laws: Laws,
     pub(super) object_count: u32,
     pub(super) control: wgpu::Buffer,
     /// The order of the particles is that of `buffers[current]`; a sort writes the other one.
     pub(super) buffers: [StateBuffers; 2],
     pub(super) current: usize,
     pub(super) backup: StateBuffers,
-    /// State beside the particles.
+    /// Of facilities beside the laws; [`Solver::kept`] has all.
     pub(super) kept: Vec<Kept>,
     pub(super) slots: wgpu::Buffer,
     /// Rows of F0^-1 in the original order.
@@ -77,7 +76,6 @@ pub struct Solver {
     pub(super) window: Option<Window>,
     /// What the watch saw at the present time; none where something changed since.
     pub(super) seen: Option<Watch>,
-    pub(super) wave_speed_m_s: f32,
     pub(super) time_s: f64,
     pub(super) substep: u32,
 }
@@ -107,35 +105,33 @@ impl Solver {
             ..Default::default()
         };
         let object_count = states.iter().map(ParticleState::object).max().unwrap_or(0) + 1;
-        let identity = Mat3::IDENTITY.to_cols_array_2d().map(|row| [row[0], row[1], row[2], 0.0]);
-        let solver = Solver {
+        let mut solver = Solver {
             passes: Passes::new(gpu),
             params_buffer: gpu.storage_from("solver.params", &[params])?,
             colliders_buffer: gpu.storage_from("solver.colliders", &padded(&colliders, 1))?,
             pins_buffer: gpu.storage::<PinRecord>("solver.pins", settings.pins.len().max(1))?,
             objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,
             object_count,
-            substances_buffer: gpu.storage_from("solver.substances", &padded(&substance::records(&particles.substances), 1))?,
-            substances: particles.substances.clone(),
+            laws: Laws::new(gpu)?,
             control: gpu.storage::<Control>("solver.control", 1)?,
             buffers: [StateBuffers::new(gpu, "solver.even", n)?, StateBuffers::new(gpu, "solver.odd", n)?],
             current: 0,
             backup: StateBuffers::new(gpu, "solver.backup", n)?,
             kept: Vec::new(),
             slots: gpu.storage::<[u32; 4]>("solver.slots", n)?,
-            unstressed: gpu.storage_from("solver.unstressed", &vec![identity; n])?,
+            unstressed: gpu.storage_from("solver.unstressed", &vec![rows(Mat3::IDENTITY); n])?,
             motion: gpu.storage::<[u32; 8]>("solver.motion", n)?,
             velocity: gpu.storage::<[f32; 4]>("solver.frame_velocity", n)?,
             grid: None,
             window: None,
             seen: None,
-            wave_speed_m_s: fastest_wave(&states),
             time_s: 0.0,
             substep: 0,
             gpu: gpu.clone(),
             settings,
             params,
         };
+        solver.set_substances(&particles.substances)?;
         solver.buffers[0].upload(gpu, &states);
         Ok(solver)
     }
@@ -150,13 +146,13 @@ impl Solver {
         self.params.count
     }
 
-    /// 8 u32 a particle in the original order: x, y, z as f32 bits; then nine f16 of G - I by rows,
-    /// where G = F F0^-1; the last half is 0. Written by [`Solver::record_frame`].
+    /// 8 u32 a particle in the original order: x, y, z as f32 bits; then nine f16 of G - I by rows; the
+    /// last half is 0. G = F F0^-1, or for laws whose F forgets all that happened, within bounds. Written by [`Solver::record_frame`].
     pub fn motion(&self) -> &wgpu::Buffer {
         &self.motion
     }
 
-    /// vec4 a particle in the original order: velocity in m/s, det G. Written by [`Solver::record_frame`].
+    /// vec4 a particle in the original order: velocity in m/s, volume over that at rest. Written by [`Solver::record_frame`].
     pub fn velocity(&self) -> &wgpu::Buffer {
         &self.velocity
     }
@@ -164,7 +160,8 @@ impl Solver {
     /// Adds the pass that writes [`Solver::motion`] and [`Solver::velocity`] for the present time.
     pub fn record_frame(&self, recording: &mut Recording) {
         let state = &self.buffers[self.current];
-        let buffers = [&self.params_buffer, &state.kinematics, &state.matter, &self.unstressed, &self.motion, &self.velocity];
+        let (seen, laws) = ([&self.motion, &self.velocity], &self.laws);
+        let buffers = [&self.params_buffer, &state.kinematics, &state.matter, &self.unstressed, seen[0], seen[1], &laws.table, laws.shown()];
         recording.dispatch(&self.passes.frame, &self.gpu.bind(&self.passes.frame, &buffers), self.particle_groups());
     }
 
@@ -176,7 +173,9 @@ impl Solver {
         // [spin] x, so that v = velocity + spin x (x - centre) has this gradient.
         let cross = Mat3::from_cols(Vec3::new(0.0, spin.z, -spin.y), Vec3::new(-spin.z, 0.0, spin.x), Vec3::new(spin.y, -spin.x, 0.0));
         let still = placement.rotation.is_near_identity() && placement.offset_m == Vec3::ZERO;
+        let mut moved = Vec::new();
         self.edit(|s| {
+            moved.push(!still && s.object() == object);
             if s.object() != object {
                 return;
             }
@@ -186,7 +185,8 @@ impl Solver {
             }
             s.velocity_m_s = placement.velocity_m_s + spin.cross(s.position_m - centre);
             s.set_affine(cross * s.mass_kg);
-        })
+        })?;
+        self.edit_shown(|i, g| if moved[i] { turn * g } else { g })
     }
 
     /// Adds to the velocity of all of an object.
@@ -210,6 +210,11 @@ impl Solver {
         self.seen = None;
     }
 
+    /// State beside the particles.
+    pub(super) fn kept(&self) -> impl Iterator<Item = &Kept> {
+        self.laws.kept().into_iter().chain(&self.kept)
+    }
+
     /// All particles in their original order.
     pub(super) fn states(&self) -> Result<Vec<ParticleState>, SolverError> {
         Ok(self.buffers[self.current].download(&self.gpu, self.params.count as usize)?)
@@ -225,7 +230,6 @@ impl Solver {
     }
 
     pub(super) fn replace(&mut self, states: &[ParticleState]) {
-        self.wave_speed_m_s = fastest_wave(states);
         self.buffers[self.current].upload(&self.gpu, states);
         self.seen = None;
     }
@@ -262,12 +266,8 @@ impl Solver {
     }
 }
 
-fn fastest_wave(states: &[ParticleState]) -> f32 {
-    states.iter().map(ParticleState::wave_speed_m_s).fold(0.0, f32::max)
-}
-
 /// A list that can always be bound.
-fn padded<T: Pod>(values: &[T], least: usize) -> Vec<T> {
+pub(super) fn padded<T: Pod>(values: &[T], least: usize) -> Vec<T> {
     let mut values = values.to_vec();
     values.resize(values.len().max(least), T::zeroed());
     values

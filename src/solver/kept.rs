@@ -15,7 +15,6 @@ pub(super) struct Kept {
 
 impl Kept {
     /// Filled with `values`.
-    #[expect(dead_code, reason = "laws with a memory of their own are the first to keep one")]
     pub fn new<T: Pod>(gpu: &Gpu, label: &str, values: &[T]) -> Result<Kept, GpuError> {
         let live = gpu.storage_from(label, values)?;
         let backup = gpu.storage::<T>(&format!("{label}.backup"), values.len())?;

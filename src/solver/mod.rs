@@ -1,4 +1,4 @@
-//! Particles to motion: the elastic solver.
+//! Particles to motion.
 //!
 //! MLS-MPM with quadratic splines and APIC. Particles are kept in the order of their cells; each
 //! substep is three passes over them and the grid blocks that they reach (`p2g`, `grid`, `g2p`), and
@@ -16,6 +16,7 @@ mod constants;
 mod core;
 mod grid;
 mod kept;
+mod laws;
 mod obstacles;
 mod prestress;
 mod state;
@@ -33,12 +34,14 @@ mod twin;
 
 pub use bench::{BenchReport, bench_substep};
 pub use core::Solver;
-pub use substance::Substance;
+pub use substance::{Activation, Substance};
 pub use types::{Advance, Collider, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError};
 
 /// Every pass of the solver, for validation and keys.
 pub fn kernels() -> Vec<KernelSource> {
-    passes::kernels()
+    let mut all = passes::kernels();
+    all.extend(laws::kernels());
+    all
 }
 
 /// Shader text of all passes, for the keys of stages.
@@ -47,4 +50,4 @@ pub fn shader_text() -> String {
 }
 
 /// Raised whenever the same input gives other bits.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;

@@ -1,7 +1,7 @@
 //! The solver's kernels, and their compiled set.
 
 /// Bytes of the immediates of a pass of the substep.
-const SUBSTEP: u32 = 16;
+pub(super) const SUBSTEP: u32 = 16;
 /// Bytes of the immediates of a kick.
 const KICK: u32 = 32;
 
@@ -61,16 +61,16 @@ passes! {
     scan_cells: ["scan", "scan_cells"] [Read, Read, Read, Read, Write] 0;
     scatter: ["cell", "scatter"] [Read, Read, Read, Write, Read, Write] 0;
     order: ["order"] [Read, Read, Read, Read, Write, Write] 0;
-    stress: ["control", "substep", "substance", "material", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
+    stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
     p2g: ["control", "substep", "particle", "contact", "p2g"] [Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
     grid: ["control", "substep", "contact", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write] SUBSTEP;
-    g2p: ["control", "substep", "substance", "material", "particle", "particle_write", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read] SUBSTEP;
-    measure: ["control", "particle", "measure"] [Read, Read, Read, Write] 0;
+    g2p: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read] SUBSTEP;
+    measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;
     kick: ["particle", "particle_write", "kick"] [Read, Write, Read] KICK;
-    prestress_gather: ["control", "substep", "substance", "material", "particle", "particle_write", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;
+    prestress_gather: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;
     prestress_residual: ["control", "substep", "contact", "prestress", "prestress_sum", "prestress_residual"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Write] SUBSTEP;
     prestress_product: ["control", "substep", "prestress", "prestress_sum", "prestress_product"] [Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     prestress_control: ["substep", "prestress", "prestress_sum", "prestress_control"] [Read, Read, Read, Write] SUBSTEP;
     prestress_update: ["substep", "prestress", "prestress_sum", "prestress_update"] [Read, Read, Read, Write, Write, Write] SUBSTEP;
-    frame: ["particle", "frame"] [Read, Read, Read, Read, Write, Write] 0;
+    frame: ["substance", "particle", "frame"] [Read, Read, Read, Read, Write, Write, Read, Read] 0;
 }

@@ -203,11 +203,13 @@ impl Solver {
     fn pseudo_particles(&self, states: &[ParticleState], objects: &[u32]) -> Vec<ParticleState> {
         let mut pseudo = states.to_vec();
         for state in &mut pseudo {
-            let takes_part = objects.contains(&state.object());
+            let takes_part = objects.contains(&state.object()) && self.laws.substances[state.substance()].can_stand();
             let stiffness = state.volume_m3 * (state.lambda_pa + 2.0 * state.mu_pa) / (CFL * self.settings.cell_m).powi(2);
-            state.weight_ratio = if takes_part { state.mass_kg / stiffness } else { 0.0 };
+            let weight_ratio = if takes_part { state.mass_kg / stiffness } else { 0.0 };
+            // What its law remembers is not asked for meanwhile, and is untouched in the states that go on.
+            state.history = weight_ratio;
             state.mass_kg = if takes_part { stiffness } else { 0.0 };
-            state.velocity_m_s = self.settings.gravity_m_s2 * state.weight_ratio;
+            state.velocity_m_s = self.settings.gravity_m_s2 * weight_ratio;
             state.affine = [0.0; 9];
             if takes_part {
                 state.set_f(glam::Mat3::IDENTITY);
@@ -261,8 +263,7 @@ impl Solver {
         let (gpu, p, params) = (&self.gpu, &self.passes, &self.params_buffer);
         let state = &self.buffers[self.current];
         let groups = Groups {
-            gather: gpu
-                .bind(&p.prestress_gather, &[params, &state.kinematics, &state.matter, &grid.velocity, &self.control, &self.substances_buffer]),
+            gather: gpu.bind(&p.prestress_gather, &[params, &state.kinematics, &state.matter, &grid.velocity, &self.control, &self.laws.table]),
             residual: gpu.bind(
                 &p.prestress_residual,
                 &[

@@ -31,14 +31,14 @@ pub(super) struct ParticleState {
     pub tag: u32,
     /// How far from its support it stands, metres; see `REST_CELLS`.
     pub rest_m: f32,
-    /// Mass over pseudo mass while the prestress is sought.
-    pub weight_ratio: f32,
+    /// What its law remembers beside F, as that law's WGSL says; while the prestress is sought, mass
+    /// over pseudo mass.
+    pub history: f32,
     pub padding: [f32; 2],
 }
 
 impl ParticleState {
     /// Row of its substance.
-    #[cfg_attr(not(test), expect(dead_code, reason = "time steps of other laws than the elastic one ask for it"))]
     pub fn substance(&self) -> usize {
         (self.tag >> 16) as usize
     }
@@ -58,11 +58,6 @@ impl ParticleState {
 
     pub fn set_affine(&mut self, a: Mat3) {
         self.affine = a.transpose().to_cols_array();
-    }
-
-    /// Speed of compression waves, sqrt((lambda + 2 mu) / rho).
-    pub fn wave_speed_m_s(&self) -> f32 {
-        ((self.lambda_pa + 2.0 * self.mu_pa) * self.volume_m3 / self.mass_kg).sqrt()
     }
 }
 
@@ -107,6 +102,7 @@ pub(super) fn initial(particles: &Particles, colliders: &[ColliderRecord], cell_
             lambda_pa,
             volume_m3: particles.volume_m3[i],
             tag: particles.object[i] | u32::from(particles.substance[i]) << 16,
+            history: particles.substances[usize::from(particles.substance[i])].first_history(),
             rest_m: distance_m(colliders, x).clamp(-2.0 * REST_CELLS * cell_m, REST_CELLS * cell_m),
             ..Default::default()
         };
@@ -145,7 +141,7 @@ impl StateBuffers {
             matter[i] = [f[0], f[1], f[2], s.mu_pa];
             matter[n + i] = [f[3], f[4], f[5], s.lambda_pa];
             matter[2 * n + i] = [f[6], f[7], f[8], s.volume_m3];
-            matter[3 * n + i] = [f32::from_bits(s.index), f32::from_bits(s.tag), s.rest_m, s.weight_ratio];
+            matter[3 * n + i] = [f32::from_bits(s.index), f32::from_bits(s.tag), s.rest_m, s.history];
         }
         gpu.upload(&self.kinematics, &kinematics);
         gpu.upload(&self.matter, &matter);
@@ -173,7 +169,7 @@ impl StateBuffers {
                 volume_m3: c[3],
                 tag: m[3 * n + i][1].to_bits(),
                 rest_m: m[3 * n + i][2],
-                weight_ratio: m[3 * n + i][3],
+                history: m[3 * n + i][3],
                 padding: [0.0; 2],
             };
         }

@@ -2,17 +2,98 @@
 
 use crate::spec::ElasticModel;
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// A constitutive law and its numbers. Moduli and density are each particle's own.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Substance {
     /// Returns to its shape.
     Elastic(ElasticModel),
+    /// Elastic, and pulls along its fibres by E times the activation (as stress at rest length).
+    Muscle {
+        /// Of its passive part.
+        model: ElasticModel,
+        /// Direction of the fibres in the captured pose; any length but 0.
+        fibre: Vec3,
+        /// How hard they pull over time.
+        activation: Activation,
+    },
+    /// Von Mises with linear hardening: keeps dents.
+    Plastic {
+        /// Stress at which a bar in tension yields, Pa.
+        yield_stress_pa: f32,
+        /// Rise of that stress with plastic strain, Pa; negative softens, down to a hundredth.
+        hardening_pa: f32,
+    },
+    /// Bingham: a solid below its yield stress, above it a thick liquid.
+    Viscoplastic {
+        /// Stress at which a bar in tension yields, Pa; in shear 1/sqrt(3) of it. 0 always flows.
+        yield_stress_pa: f32,
+        /// Plastic viscosity in simple shear, Pa s; 0 slips freely at the yield stress.
+        viscosity_pa_s: f32,
+    },
+    /// Drucker-Prager: grains that hold by friction.
+    Sand {
+        /// Slope at which it comes to rest, degrees, above 0 and below 90: tan of it is the ratio of
+        /// shear to pressure at which it slides.
+        friction_angle_deg: f32,
+        /// Shear stress that it bears without pressure, Pa.
+        cohesion_pa: f32,
+    },
+    /// Stomakhin et al. 2013: packs and hardens, breaks and loosens.
+    Snow {
+        /// Compression that is still elastic, as a strain.
+        theta_c: f32,
+        /// Stretch that is still elastic, as a strain.
+        theta_s: f32,
+        /// Exponent of the stiffness over the packing: exp(hardening (1 - Jp)).
+        hardening: f32,
+    },
 }
 
 impl Default for Substance {
     fn default() -> Substance {
         Substance::Elastic(ElasticModel::Corotated)
+    }
+}
+
+/// How hard a muscle pulls over time: 0 not at all, 1 by its Young's modulus.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Activation {
+    /// Straight lines between points (seconds, value) in ascending time; held before and after them.
+    Curve(Vec<(f64, f64)>),
+    /// Swings between two values like a cosine, from `least` at phase 0.
+    Wave {
+        /// Value at the start of a period.
+        least: f64,
+        /// Value half a period later.
+        most: f64,
+        /// Length of a period, seconds.
+        period_s: f64,
+        /// Share of a period that has passed at t = 0.
+        phase: f64,
+    },
+}
+
+impl Activation {
+    /// The value at a time, held to 0 to 1.
+    pub fn at(&self, time_s: f64) -> f64 {
+        let value = match self {
+            Activation::Curve(points) => {
+                let next = points.partition_point(|&(t, _)| t <= time_s);
+                match (next.checked_sub(1).and_then(|k| points.get(k)), points.get(next)) {
+                    (Some(&(t0, a0)), Some(&(t1, a1))) => a0 + (a1 - a0) * (time_s - t0) / (t1 - t0),
+                    (Some(&(_, a)), None) | (None, Some(&(_, a))) => a,
+                    (None, None) => 0.0,
+                }
+            }
+            Activation::Wave { least, most, period_s, phase } => {
+                let turn = (time_s / period_s + phase) * std::f64::consts::TAU;
+                least + (most - least) * 0.5 * (1.0 - turn.cos())
+            }
+        };
+        if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 }
     }
 }
 
@@ -22,14 +103,82 @@ impl Default for Substance {
 pub(super) struct SubstanceRecord {
     pub kind: u32,
     pub model: u32,
+    pub shown: [f32; 2],
     pub values: [f32; 6],
 }
 
+/// Kinds, as WGSL knows them.
+pub(super) const ELASTIC: u32 = 0;
+pub(super) const MUSCLE: u32 = 1;
+pub(super) const PLASTIC: u32 = 2;
+pub(super) const VISCOPLASTIC: u32 = 3;
+pub(super) const SAND: u32 = 4;
+pub(super) const SNOW: u32 = 5;
+
 impl Substance {
     pub(super) fn record(&self) -> SubstanceRecord {
+        let model_of = |model: &ElasticModel| u32::from(*model == ElasticModel::NeoHookean);
+        let (kind, model, values) = match self {
+            Substance::Elastic(model) => (ELASTIC, model_of(model), [0.0; 3]),
+            Substance::Muscle { model, fibre, .. } => (MUSCLE, model_of(model), fibre.normalize_or_zero().to_array()),
+            Substance::Plastic { yield_stress_pa, hardening_pa } => (PLASTIC, 0, [*yield_stress_pa, *hardening_pa, 0.0]),
+            Substance::Viscoplastic { yield_stress_pa, viscosity_pa_s } => (VISCOPLASTIC, 0, [*yield_stress_pa, *viscosity_pa_s, 0.0]),
+            Substance::Sand { friction_angle_deg, cohesion_pa } => {
+                let tan = friction_angle_deg.to_radians().tan();
+                (SAND, 0, [std::f32::consts::SQRT_2 * tan, cohesion_pa / tan, 0.0])
+            }
+            Substance::Snow { theta_c, theta_s, hardening } => (SNOW, 0, [*theta_c, *theta_s, *hardening]),
+        };
+        let [a, b, c] = values;
+        SubstanceRecord { kind, model, shown: self.shown_stretch().unwrap_or_default(), values: [a, b, c, 0.0, 0.0, 0.0] }
+    }
+
+    /// Bounds of the stretch that is shown of what does not remember its shape; none where F is shown.
+    /// Narrow where matter comes apart, so that no Gaussian becomes a needle.
+    pub(super) fn shown_stretch(&self) -> Option<[f32; 2]> {
         match self {
-            Substance::Elastic(model) => SubstanceRecord { kind: 0, model: u32::from(*model == ElasticModel::NeoHookean), values: [0.0; 6] },
+            Substance::Elastic(_) | Substance::Muscle { .. } => None,
+            Substance::Plastic { .. } => Some([0.3, 3.0]),
+            Substance::Viscoplastic { .. } => Some([0.4, 2.5]),
+            Substance::Sand { .. } | Substance::Snow { .. } => Some([0.7, 1.4]),
         }
+    }
+
+    /// Whether it is elastic and nothing else, so that the plain passes do.
+    pub(super) fn is_elastic(&self) -> bool {
+        matches!(self, Substance::Elastic(_))
+    }
+
+    /// Whether it can stand as captured, under a prestress.
+    pub(super) fn can_stand(&self) -> bool {
+        matches!(self, Substance::Elastic(_) | Substance::Muscle { .. } | Substance::Plastic { .. } | Substance::Viscoplastic { .. })
+    }
+
+    /// What its law remembers of a past in which nothing happened.
+    pub(super) fn first_history(&self) -> f32 {
+        match self {
+            // det of the plastic part of F.
+            Substance::Snow { .. } => 1.0,
+            _ => 0.0,
+        }
+    }
+
+    /// What of its numbers makes no sense, where something does not.
+    pub(super) fn flaw(&self) -> Option<String> {
+        let positive = 0.0..f32::INFINITY;
+        let fine = match self {
+            Substance::Elastic(_) => true,
+            Substance::Muscle { fibre, .. } => fibre.is_finite() && *fibre != Vec3::ZERO,
+            Substance::Plastic { yield_stress_pa, hardening_pa } => positive.contains(yield_stress_pa) && hardening_pa.is_finite(),
+            Substance::Viscoplastic { yield_stress_pa, viscosity_pa_s } => positive.contains(yield_stress_pa) && positive.contains(viscosity_pa_s),
+            Substance::Sand { friction_angle_deg, cohesion_pa } => {
+                *friction_angle_deg > 0.0 && *friction_angle_deg < 90.0 && positive.contains(cohesion_pa)
+            }
+            Substance::Snow { theta_c, theta_s, hardening } => {
+                *theta_c > 0.0 && *theta_c < 1.0 && *theta_s > 0.0 && *theta_s < 1.0 && (0.0..=20.0).contains(hardening)
+            }
+        };
+        (!fine).then(|| format!("{self:?}"))
     }
 }
 

@@ -18,6 +18,7 @@ pub(super) struct Control {
     low: [i32; 3],
     high: [i32; 3],
     final_speed: u32,
+    wave_speed: u32,
 }
 
 impl Control {
@@ -34,11 +35,13 @@ impl Control {
         low: [i32::MAX; 3],
         high: [i32::MIN; 3],
         final_speed: 0,
+        wave_speed: 0,
     };
 
     pub fn watch(&self) -> Watch {
         Watch {
             speed_m_s: f32::from_bits(self.final_speed),
+            wave_speed_m_s: f32::from_bits(self.wave_speed),
             peak_speed_m_s: f32::from_bits(self.speed),
             overflow: self.overflow != 0,
             window: self.window != 0,
@@ -62,6 +65,8 @@ fn value(bits: u32) -> f32 {
 pub(super) struct Watch {
     /// Fastest particle now.
     pub speed_m_s: f32,
+    /// Fastest wave that any particle can carry now.
+    pub wave_speed_m_s: f32,
     /// Fastest particle at any substep of the segment.
     pub peak_speed_m_s: f32,
     pub overflow: bool,
@@ -80,6 +85,8 @@ pub(super) struct Watch {
 const J_TRIP: (f32, f32) = (-1.0, 60.0);
 /// Cells that a particle may move in one substep.
 const STEP_CELLS: f32 = 0.6;
+/// Cells that a wave may run in one substep: a law that stiffened meanwhile takes smaller ones.
+const WAVE_CELLS: f32 = 0.75;
 
 impl Watch {
     /// Why the segment has to be run again, if it has to. `travel_m` is how far a particle may go
@@ -92,6 +99,10 @@ impl Watch {
         let moved_m = self.peak_speed_m_s * dt_s;
         if !(moved_m <= STEP_CELLS * cell_m && moved_m * sort_every as f32 <= travel_m) {
             return Some(format!("particles moved {:.2} cells in a substep", moved_m / cell_m));
+        }
+        let wave_cells = self.wave_speed_m_s * dt_s / cell_m;
+        if wave_cells > WAVE_CELLS {
+            return Some(format!("waves ran {wave_cells:.2} cells in a substep"));
         }
         if self.window {
             return Some("particles left the grid".to_owned());

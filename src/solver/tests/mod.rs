@@ -1,6 +1,7 @@
 //! Tests of the whole solver on a device, and of each kernel against its twin.
 
 mod contact;
+mod laws;
 mod motion;
 mod prestress;
 mod twins;

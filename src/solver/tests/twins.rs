@@ -2,7 +2,7 @@
 
 use super::solver;
 use crate::gpu::{Gpu, Recording};
-use crate::solver::advance::Substep;
+use crate::solver::advance::{Plan, Substep};
 use crate::solver::core::Solver;
 use crate::solver::obstacles;
 use crate::solver::state::ParticleState;
@@ -17,14 +17,14 @@ const CELL_M: f32 = 0.05;
 const DT_S: f32 = 4e-4;
 
 /// Numbers between -1 and 1 that look random and are always the same.
-struct Noise(u32);
+pub(super) struct Noise(pub u32);
 
 impl Noise {
-    fn next(&mut self) -> f32 {
+    pub fn next(&mut self) -> f32 {
         self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (self.0 >> 8) as f32 / (1 << 23) as f32 - 1.0
     }
-    fn vec(&mut self) -> Vec3 {
+    pub fn vec(&mut self) -> Vec3 {
         Vec3::new(self.next(), self.next(), self.next())
     }
 }
@@ -32,10 +32,15 @@ impl Noise {
 /// Two overlapping blocks of both energies, jittered, deformed and moving, that stand in the ground,
 /// in a box and in a sphere, with a pin.
 fn scene() -> (Solver, Vec<ParticleState>) {
-    let mut noise = Noise(7);
+    scene_of([Substance::Elastic(ElasticModel::Corotated), Substance::Elastic(ElasticModel::NeoHookean)])
+}
+
+fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
+    let (mut noise, mut past) = (Noise(7), Noise(5));
     let mut particles = block(Vec3::new(0.0, 0.0, 0.01), Vec3::splat(0.2), 0.025, 2e5, 0.3);
     let other = block(Vec3::new(0.19, 0.05, 0.02), Vec3::splat(0.1), 0.02, 5e4, 0.2);
     append(&mut particles, other);
+    particles.substances = substances.to_vec();
     for x in &mut particles.position_m {
         *x += noise.vec() * 0.008;
     }
@@ -64,8 +69,11 @@ fn scene() -> (Solver, Vec<ParticleState>) {
             }
             s.set_f(Mat3::from_rotation_z(1.0 + noise.next()) * f);
             s.set_affine(Mat3::from_cols(noise.vec(), noise.vec(), noise.vec()) * (3.0 * s.mass_kg));
+            s.history += 0.1 * past.next().abs();
         })
         .expect("an edit");
+    solver.edit_shown(|_, g| g + Mat3::from_cols(past.vec(), past.vec(), past.vec()) * 0.5).expect("an edit");
+    solver.set_activations(&Plan { dt_s: DT_S, last_dt_s: DT_S, substeps: 2, sort_every: 1 }).expect("room");
     let seen = solver.look().expect("a look");
     solver.fit_window(seen.low, seen.high, 4).expect("a window");
     solver.set_surroundings();
@@ -83,7 +91,6 @@ fn append(to: &mut Particles, from: Particles) {
     to.young_pa.extend(from.young_pa);
     to.poisson.extend(from.poisson);
     to.substance.extend(vec![1; n]);
-    to.substances = vec![Substance::Elastic(ElasticModel::Corotated), Substance::Elastic(ElasticModel::NeoHookean)];
     to.object.extend(vec![1; n]);
 }
 
@@ -138,16 +145,34 @@ fn the_sort_lists_the_same_cells_blocks_and_order() {
 
 #[test]
 fn one_substep_pass_by_pass() {
-    let (mut solver, mut states) = scene();
+    follows_the_twins([Substance::Elastic(ElasticModel::Corotated), Substance::Elastic(ElasticModel::NeoHookean)]);
+}
+
+#[test]
+fn one_substep_of_other_laws() {
+    let [_, _, muscle, hardening, _, viscoplastic, sand, _, snow] = super::laws::all_laws().try_into().expect("nine");
+    follows_the_twins([muscle, hardening]);
+    follows_the_twins([viscoplastic, sand]);
+    follows_the_twins([snow.clone(), snow]);
+}
+
+fn follows_the_twins(substances: [Substance; 2]) {
+    let (mut solver, mut states) = scene_of(substances);
     let colliders = obstacles::colliders(&solver.settings);
     let pins = [obstacles::pin(&solver.settings.pins[0], CELL_M)];
     let accelerations = [Vec3::ZERO, Vec3::new(3.0, -2.0, 1.0)];
-    let substances = solver.substances.clone();
+    let substances = solver.laws.substances.clone();
+    let shown_before: Vec<[[f32; 4]; 3]> =
+        gpu().read(solver.laws.shown(), if solver.laws.kept().is_some() { states.len() } else { 1 }).expect("rows");
     let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &accelerations, substances: &substances };
     sort(&mut solver);
     let (passes, groups) = (solver.passes.clone(), solver.particle_groups());
     let bound = solver.bind_both().expect("bound");
     let b = &bound[solver.current];
+
+    // Logarithms lose digits; the rotation of what is inside out is found by turns that come to it slowly.
+    let exact = if substances.iter().all(Substance::is_elastic) { 1e-5 } else { 5e-5 };
+    let tolerance = |s: &ParticleState| if s.f().determinant() < crate::solver::constants::FLAT { 2e-3 } else { exact };
 
     // Stress into A.
     run(|r| r.dispatch_with(&passes.stress, &b.stress, &SUBSTEP, groups));
@@ -155,9 +180,7 @@ fn one_substep_pass_by_pass() {
     for (got, want) in solver.states().expect("states").iter().zip(&states) {
         let scale = want.affine.iter().fold(0f32, |a, b| a.max(b.abs()));
         let worst = got.affine.iter().zip(&want.affine).fold(0f32, |a, (g, w)| a.max((g - w).abs()));
-        // The rotation of what is inside out is found by turns that come to it slowly.
-        let tolerance = if want.f().determinant() < crate::solver::constants::FLAT { 2e-3 } else { 1e-5 };
-        assert!(worst <= tolerance * scale, "stress of particle {}: off by {worst} of {scale}", want.index);
+        assert!(worst <= tolerance(want) * scale, "stress of particle {}: off by {worst} of {scale}", want.index);
     }
 
     // Particles to grid.
@@ -205,16 +228,30 @@ fn one_substep_pass_by_pass() {
         value.velocity = Vec3::from_slice(&velocity[stored(node, &solver)]);
     }
     run(|r| r.dispatch_with(&passes.g2p, &b.g2p, &SUBSTEP, groups));
+    let before = states.clone();
     twin::g2p(&mut states, &want, &around, DT_S, DT_S);
     for (got, want) in solver.states().expect("states").iter().zip(&states) {
         let name = format!("particle {}", want.index);
         close(&name, got.position_m, want.position_m, CELL_M, 1e-5);
         close(&name, got.velocity_m_s, want.velocity_m_s, 5.0, 1e-5);
-        assert!(got.f().abs_diff_eq(want.f(), 2e-5), "F of {name}: {} and {}", got.f(), want.f());
+        let flat = want.f().determinant() < crate::solver::constants::FLAT;
+        assert!(got.f().abs_diff_eq(want.f(), if flat { 2e-3 } else { 3e-5 }), "F of {name}: {} and {}", got.f(), want.f());
         let scale = want.affine.iter().fold(0f32, |a, b| a.max(b.abs()));
         let worst = got.affine.iter().zip(&want.affine).fold(0f32, |a, (g, w)| a.max((g - w).abs()));
-        let tolerance = if want.f().determinant() < crate::solver::constants::FLAT { 2e-3 } else { 1e-5 };
-        assert!(worst <= tolerance * scale, "A of {name}: off by {worst} of {scale}");
+        assert!(worst <= tolerance(want) * scale, "A of {name}: off by {worst} of {scale}");
+        assert!((got.history - want.history).abs() < 3e-5 * want.history.abs().max(1.0), "history of {name}: {} and {}", got.history, want.history);
+    }
+    let shown: Vec<[[f32; 4]; 3]> = gpu().read(solver.laws.shown(), shown_before.len()).expect("rows");
+    for (s, (before, after)) in before.iter().zip(shown_before.iter().zip(&shown)) {
+        let matrix = |rows: &[[f32; 4]; 3]| Mat3::from_cols_array_2d(&rows.map(|r| [r[0], r[1], r[2]])).transpose();
+        match substances[s.substance()].shown_stretch() {
+            Some(bounds) => {
+                let gradient = twin::gather(&want, s.position_m, &around.params).1;
+                let want = twin::laws::shown(matrix(before).as_dmat3(), gradient, f64::from(DT_S), bounds).as_mat3();
+                assert!(matrix(after).abs_diff_eq(want, 2e-5), "shown of particle {}: {} and {want}", s.index, matrix(after));
+            }
+            None => assert_eq!(before, after),
+        }
     }
 }
 
@@ -278,7 +315,7 @@ fn rounds_of_the_prestress_follow_the_twins() {
     let got = solver.search_rounds(&states, 6).expect("rounds");
     let colliders = obstacles::colliders(&solver.settings);
     let around =
-        Surroundings { params: solver.params, colliders: &colliders, pins: &[], accelerations: &[Vec3::ZERO], substances: &solver.substances };
+        Surroundings { params: solver.params, colliders: &colliders, pins: &[], accelerations: &[Vec3::ZERO], substances: &solver.laws.substances };
     let lightest = f64::from(crate::solver::constants::LIGHTEST) / f64::from(solver.params.mass_units);
     let want = twin::prestress::rounds(&got.pseudo, &around, 6, lightest);
     let largest = want.values().map(|u| u.length()).fold(0.0, f64::max);

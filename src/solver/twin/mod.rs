@@ -1,5 +1,6 @@
 //! The solver's passes in plain Rust, for the tests: the same formulas on a map of nodes, sums in f64.
 
+pub mod laws;
 pub mod material;
 pub mod prestress;
 pub mod sort;
@@ -9,7 +10,6 @@ use super::core::Params;
 use super::obstacles::{ColliderRecord, PinRecord};
 use super::state::ParticleState;
 use super::substance::Substance;
-use crate::spec::ElasticModel;
 use glam::{DMat3, DVec3, IVec3, Mat3, Vec3};
 use std::collections::BTreeMap;
 
@@ -36,8 +36,10 @@ pub struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    pub fn neo_hookean(&self, state: &ParticleState) -> bool {
-        self.substances[state.substance()] == Substance::Elastic(ElasticModel::NeoHookean)
+    /// What the law of a particle lets stand of a trial F; a muscle is at half its strength.
+    pub fn respond(&self, state: &ParticleState, trial: DMat3, dt_s: f32) -> laws::Answer {
+        let (mu, lambda, history) = (f64::from(state.mu_pa), f64::from(state.lambda_pa), f64::from(state.history));
+        laws::respond(&self.substances[state.substance()], trial, &laws::Matter { mu, lambda, history, activation: 0.5 }, f64::from(dt_s))
     }
 }
 
@@ -71,7 +73,7 @@ fn affine(state: &ParticleState) -> DMat3 {
 pub fn stress(states: &mut [ParticleState], around: &Surroundings, dt_s: f32) {
     let params = &around.params;
     for s in states {
-        let tau = material::kirchhoff(s.f().as_dmat3(), f64::from(s.mu_pa), f64::from(s.lambda_pa), around.neo_hookean(s));
+        let tau = around.respond(s, s.f().as_dmat3(), 0.0).tau;
         let weight = f64::from(dt_s) * 4.0 * f64::from(params.per_m).powi(2) * f64::from(s.volume_m3);
         s.set_affine((affine(s) - tau * weight).as_mat3());
     }
@@ -188,10 +190,11 @@ pub fn g2p(states: &mut [ParticleState], grid: &Grid, around: &Surroundings, dt_
             }
         }
         let f = (DMat3::IDENTITY + gradient * f64::from(dt_s)) * s.f().as_dmat3();
-        let tau = material::kirchhoff(f, f64::from(s.mu_pa), f64::from(s.lambda_pa), around.neo_hookean(s));
+        let answer = around.respond(s, f, dt_s);
         let weight = f64::from(dt_next_s) * 4.0 * f64::from(params.per_m).powi(2) * f64::from(s.volume_m3);
-        s.set_affine((gradient * f64::from(s.mass_kg) - tau * weight).as_mat3());
-        s.set_f(f.as_mat3());
+        s.set_affine((gradient * f64::from(s.mass_kg) - answer.tau * weight).as_mat3());
+        s.set_f(answer.f.as_mat3());
+        s.history = answer.history as f32;
         s.position_m = x;
         s.velocity_m_s = v;
     }

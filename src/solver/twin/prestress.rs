@@ -1,6 +1,6 @@
 //! The search for the prestress: one system of conjugate gradients in f64.
 
-use super::{Grid, Surroundings, gather, material, p2g};
+use super::{Grid, Surroundings, gather, p2g};
 use crate::solver::constants::{CARRY_SHARE, CARRY_STEPS};
 use crate::solver::state::ParticleState;
 use glam::{DMat3, DVec3, Vec3};
@@ -69,7 +69,7 @@ pub fn rounds(states: &[ParticleState], around: &Surroundings, rounds: u32, ligh
 pub fn adopted(state: &ParticleState, solution: &Field, around: &Surroundings) -> DMat3 {
     let grid: Grid = solution.iter().map(|(node, u)| (*node, super::Node { velocity: u.as_vec3(), ..Default::default() })).collect();
     let (mu, lambda) = (f64::from(state.mu_pa), f64::from(state.lambda_pa));
-    let law = |f: DMat3| material::kirchhoff(f, mu, lambda, around.neo_hookean(state));
+    let law = |f: DMat3| around.respond(state, f, 0.0).tau;
     let wanted = law(state.f().as_dmat3()) + linear_stress(strain(gather(&grid, state.position_m, &around.params).1), mu, lambda);
     (0..CARRY_STEPS).fold(state.f().as_dmat3(), |f, _| {
         let missing = wanted - law(f);

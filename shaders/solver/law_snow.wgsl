@@ -1,0 +1,20 @@
+// Snow (Stomakhin et al. 2013): fixed corotated, of which stretches beyond [1 - theta_c, 1 + theta_s]
+// turn plastic; packed snow is stiffer, loosened snow softer.
+//
+// values: theta_c, theta_s, hardening. History: det of the plastic part of F.
+fn snow(s: Substance, trial: mat3x3<f32>, history: f32, mu: f32, lambda: f32) -> Answer {
+    let axes = svd(trial);
+    let kept = clamp(axes.s, vec3<f32>(1.0 - s.values[0]), vec3<f32>(1.0 + s.values[1]));
+    // What is inside out counts as crushed flat.
+    let volume = max(axes.s.x * axes.s.y * axes.s.z, 1e-6);
+    let j = kept.x * kept.y * kept.z;
+    var packing = history;
+    var f = trial;
+    if (any(kept != axes.s)) {
+        packing = clamp(history * volume / j, PACKING_LEAST, PACKING_MOST);
+        f = compose(axes.u, kept, axes.v);
+    }
+    let stiffening = snow_stiffening(s, packing);
+    let stress = stiffening * (2.0 * mu * (kept - vec3<f32>(1.0)) * kept + vec3<f32>(lambda * j * (j - 1.0)));
+    return Answer(f, packing, compose(axes.u, stress, axes.u));
+}
