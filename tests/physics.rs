@@ -33,6 +33,7 @@ macro_rules! long_cases {
 
 long_cases! {
     a_cantilever_bends_as_timoshenko_says: "V5";
+    a_cantilever_swings_as_its_beam_does: "V6";
     what_was_captured_standing_stays_as_it_stands: "left alone";
     what_is_dropped_bends_and_comes_back: "dropped";
 }

@@ -10,6 +10,7 @@ mod neighbours;
 mod skinner;
 mod splats;
 pub mod twin;
+pub mod validate;
 
 pub use bench::bench_skin;
 pub use bind::{Bound, STATIC, bind};

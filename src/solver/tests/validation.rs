@@ -37,5 +37,7 @@ quick_cases! {
     v3_angular_momentum: "V3";
     v4_spinning_rod: "V4";
     v7_column: "V7";
+    v8_wave_in_a_bar: "V8";
+    v11_block_on_a_slope: "V11";
     v26_same_bits: "V26";
 }

@@ -1,6 +1,7 @@
 //! Bodies under their own weight: V5 and V7.
 
 use super::bodies::{block, mean_of};
+use super::waves::frequency_hz;
 use super::{Check, Plot};
 use crate::Stop;
 use crate::gpu::Gpu;
@@ -64,8 +65,8 @@ fn timoshenko_m(x: f64) -> f64 {
     q * x * x * (6.0 * l * l - 4.0 * l * x + x * x) / (24.0 * e * inertia) + q * (l * x - 0.5 * x * x) / (5.0 / 6.0 * shear * area)
 }
 
-/// Deflection along a cantilever of four cells' height, from clamp to tip.
-fn cantilever_curve(gpu: &Gpu) -> Result<Vec<BeamPoint>, SolverError> {
+/// The cantilever in its clamp, straight, at rest, under gravity from now on.
+fn cantilever_start(gpu: &Gpu) -> Result<(Solver, Particles), SolverError> {
     let (l, h, b, e) = BEAM;
     // The clamp holds two more cells of the beam.
     let held_m = 2.0 * CELL_M;
@@ -73,9 +74,21 @@ fn cantilever_curve(gpu: &Gpu) -> Result<Vec<BeamPoint>, SolverError> {
     let particles = block(low, Vec3::new(l as f32 + held_m, b as f32, h as f32), SPACING_M, e as f32, 0.0);
     let mut settings = Settings::new(CELL_M);
     settings.pins.push(clamp(&particles, Vec3::X));
-    let mut solver = Solver::new(gpu, settings, &particles)?;
-    // First mode of an Euler-Bernoulli cantilever, slowed by shear by a few per cent: second order here.
-    let frequency_hz = 1.8751f64.powi(2) / std::f64::consts::TAU * (e * h * h / 12.0 / DENSITY_KG_M3).sqrt() / (l * l);
+    Ok((Solver::new(gpu, settings, &particles)?, particles))
+}
+
+/// First mode of an Euler-Bernoulli cantilever, (1.8751^2 / 2 pi) sqrt(E I / rho A) / L^2.
+fn first_mode_hz() -> f64 {
+    let (l, h, _, e) = BEAM;
+    1.8751f64.powi(2) / std::f64::consts::TAU * (e * h * h / 12.0 / DENSITY_KG_M3).sqrt() / (l * l)
+}
+
+/// Deflection along a cantilever of four cells' height, from clamp to tip.
+fn cantilever_curve(gpu: &Gpu) -> Result<Vec<BeamPoint>, SolverError> {
+    let (mut solver, particles) = cantilever_start(gpu)?;
+    let l = BEAM.0;
+    // Slowed by shear by a per cent: second order here.
+    let frequency_hz = first_mode_hz();
     let columns: Vec<f32> = (0..).map(|k| (k as f32 + 0.5) * SPACING_M).take_while(|&x| x < l as f32).collect();
     let of_column = |x: f32| (0..particles.len()).filter(|&i| (particles.position_m[i].x - CLAMP_M - x).abs() < 0.1 * SPACING_M).collect::<Vec<_>>();
     let picked: Vec<_> = columns.iter().map(|&x| of_column(x)).collect();
@@ -105,6 +118,22 @@ pub(super) fn cantilever(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let check = Check::new("V5 cantilever tip", "q L^4 / (8 E I) + q L^2 / (2 k G A)", "Timoshenko, k = 5/6", "m");
     let along = Check::new("V5 cantilever, whole length", "farthest from the line, as a share of the tip's", "Timoshenko, k = 5/6", "");
     Ok(vec![check.compare(tip.expected_m, tip.measured_m, 0.05).with_plot(plot), along.compare(0.0, farthest, 0.05)])
+}
+
+/// V6: how fast the tip swings once gravity is there.
+pub(super) fn swing(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let (mut solver, particles) = cantilever_start(gpu)?;
+    let tip: Vec<usize> = (0..particles.len()).filter(|&i| particles.position_m[i].x - CLAMP_M > BEAM.0 as f32 - SPACING_M).collect();
+    let expected_hz = first_mode_hz();
+    let mut samples = Vec::new();
+    for k in 0..=48 {
+        let time_s = 1.5 / expected_hz * f64::from(k) / 48.0;
+        solver.advance(time_s, &Stop::default())?;
+        samples.push([time_s, 1e3 * mean_of(&solver, &tip, |s| f64::from(s.position_m.z))?]);
+    }
+    let measured_hz = frequency_hz(&samples, expected_hz);
+    let check = Check::new("V6 cantilever's first mode", "(1.8751^2 / 2 pi) sqrt(E I / (rho A)) / L^2", "Euler and Bernoulli, L / h = 6", "Hz");
+    Ok(vec![check.compare(expected_hz, measured_hz, 0.05)])
 }
 
 /// V7: how a column that stands under its own weight, free sideways with nu = 0, shortens between two

@@ -5,6 +5,8 @@ mod captured;
 mod free;
 mod loaded;
 mod repeat;
+mod sliding;
+mod waves;
 
 #[cfg(test)]
 pub(super) use bodies::block;
@@ -55,12 +57,13 @@ pub struct Check {
 }
 
 impl Check {
-    fn new(name: &'static str, formula: &'static str, source: &'static str, unit: &'static str) -> Check {
+    /// Nothing measured yet.
+    pub fn new(name: &'static str, formula: &'static str, source: &'static str, unit: &'static str) -> Check {
         Check { name, formula, source, expected: 0.0, measured: f64::NAN, tolerance: 0.0, unit, held: false, plot: None }
     }
 
     /// Compares; a number that is none never holds.
-    fn compare(self, expected: f64, measured: f64, tolerance: f64) -> Check {
+    pub fn compare(self, expected: f64, measured: f64, tolerance: f64) -> Check {
         let scale = if expected == 0.0 { 1.0 } else { expected.abs() };
         Check { expected, measured, tolerance, held: (measured - expected).abs() <= tolerance * scale, ..self }
     }
@@ -71,16 +74,25 @@ impl Check {
     }
 }
 
+/// What runs a case on a device.
+pub type Run = fn(&Gpu) -> Result<Vec<Check>, SolverError>;
+
 /// A case: its name, and what runs it.
+#[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Names of its checks begin with this.
     pub name: &'static str,
     /// Seconds on a software adapter; minutes where false.
     pub quick: bool,
-    run: fn(&Gpu) -> Result<Vec<Check>, SolverError>,
+    run: Run,
 }
 
 impl Case {
+    /// See the fields.
+    pub const fn new(name: &'static str, quick: bool, run: Run) -> Case {
+        Case { name, quick, run }
+    }
+
     /// Runs it.
     pub fn run(&self, gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         (self.run)(gpu)
@@ -94,7 +106,10 @@ pub const CASES: &[Case] = &[
     Case { name: "V3", quick: true, run: free::angular_momentum },
     Case { name: "V4", quick: true, run: free::spinning_rod },
     Case { name: "V5", quick: false, run: loaded::cantilever },
+    Case { name: "V6", quick: false, run: loaded::swing },
     Case { name: "V7", quick: true, run: loaded::column },
+    Case { name: "V8", quick: true, run: waves::bar },
+    Case { name: "V11", quick: true, run: sliding::incline },
     Case { name: "V26", quick: true, run: repeat::same_bits },
     Case { name: "left alone", quick: false, run: captured::left_alone },
     Case { name: "dropped", quick: false, run: captured::dropped },

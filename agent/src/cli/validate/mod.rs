@@ -9,7 +9,8 @@ use super::output;
 use crate::conversation::duration;
 use clap::Args;
 use phystalk::gpu::Gpu;
-use phystalk::solver::validate::{CASES, Case, Check};
+use phystalk::skin;
+use phystalk::solver::validate::{self, Case, Check};
 use phystalk::stages::EngineError;
 use serde_json::json;
 use std::path::PathBuf;
@@ -59,15 +60,20 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     }
 }
 
+/// Every case of every room.
+fn cases() -> impl Iterator<Item = &'static Case> {
+    validate::CASES.iter().chain(skin::validate::CASES)
+}
+
 /// The cases that were asked for, in their own order.
 fn chosen(arguments: &Arguments) -> Result<Vec<&'static Case>, Failure> {
     let fits = |name: &String, case: &Case| case.name.eq_ignore_ascii_case(name);
-    if let Some(unknown) = arguments.names.iter().find(|n| !CASES.iter().any(|c| fits(n, c))) {
-        let known: Vec<_> = CASES.iter().map(|c| c.name).collect();
+    if let Some(unknown) = arguments.names.iter().find(|n| !cases().any(|c| fits(n, c))) {
+        let known: Vec<_> = cases().map(|c| c.name).collect();
         return Err(Failure::new(Kind::Usage, format!("there is no case {unknown:?}; there are {}", known.join(", "))));
     }
     let wanted = |case: &&Case| (arguments.names.is_empty() || arguments.names.iter().any(|n| fits(n, case))) && (case.quick || !arguments.quick);
-    Ok(CASES.iter().filter(wanted).collect())
+    Ok(cases().filter(wanted).collect())
 }
 
 /// One check on one line.
