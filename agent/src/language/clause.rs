@@ -278,6 +278,14 @@ impl Clause {
         self.phrases.iter().find(|p| p.sense != Sense::Filler).is_some_and(|p| p.sense == Sense::Condition)
     }
 
+    /// The first verb, taken or not.
+    pub fn verb(&self) -> Option<Verb> {
+        self.phrases.iter().find_map(|p| match p.sense {
+            Sense::Verb(verb) => Some(verb),
+            _ => None,
+        })
+    }
+
     fn last_verb(&self) -> Option<Verb> {
         self.phrases.iter().rev().find_map(|p| match p.sense {
             Sense::Verb(verb) => Some(verb),

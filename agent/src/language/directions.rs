@@ -48,7 +48,7 @@ impl Frame {
         match direction {
             Direction::Forward => self.forward,
             Direction::Backward => -self.forward,
-            Direction::Left => left,
+            Direction::Left | Direction::Sideways => left,
             Direction::Right => -left,
             Direction::Up | Direction::Anticlockwise => DVec3::Z,
             Direction::Down | Direction::Clockwise => -DVec3::Z,
@@ -88,6 +88,7 @@ pub fn said(direction: Direction) -> &'static str {
         Direction::Backward => "backward",
         Direction::Left => "to its left",
         Direction::Right => "to its right",
+        Direction::Sideways => "sideways, to its left (no side said)",
         Direction::Up => "up",
         Direction::Down => "down",
         Direction::Towards => "towards the camera",

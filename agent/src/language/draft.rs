@@ -4,11 +4,14 @@
 use super::Context;
 use super::clause::Clause;
 use super::directions::Frame;
+use super::reference;
 use super::say;
 use super::sense::Sense;
+use super::tokens::Token;
 use glam::{DMat3, DVec3, EulerRot};
 use phystalk::spec::{Auto, Camera, Elastic, Event, Material, Object, Spec};
 use phystalk::world::ObjectFacts;
+use std::ops::Range;
 
 /// Why a clause is refused, as a sentence.
 pub type Refusal = String;
@@ -17,14 +20,12 @@ pub type Refusal = String;
 pub struct Draft<'a> {
     /// What the request is about.
     pub context: &'a Context<'a>,
+    /// The request as written.
+    tokens: &'a [Token],
     /// The spec so far.
     pub spec: Spec,
     /// What was understood, one sentence each.
     pub gloss: Vec<String>,
-    /// What was refused, one sentence each.
-    pub refusals: Vec<Refusal>,
-    /// Words of objects that do not exist.
-    pub missing: Vec<std::ops::Range<usize>>,
     /// The objects that were spoken of last.
     subject: Option<Vec<usize>>,
     /// Whether this request sent something up or placed it high: it falls by itself.
@@ -33,8 +34,13 @@ pub struct Draft<'a> {
 
 impl<'a> Draft<'a> {
     /// Starts from `spec`.
-    pub fn new(context: &'a Context<'a>, spec: Spec) -> Draft<'a> {
-        Draft { context, spec, gloss: Vec::new(), refusals: Vec::new(), missing: Vec::new(), subject: None, aloft: false }
+    pub fn new(context: &'a Context<'a>, tokens: &'a [Token], spec: Spec) -> Draft<'a> {
+        Draft { context, tokens, spec, gloss: Vec::new(), subject: None, aloft: false }
+    }
+
+    /// Some words of the request, as written.
+    pub fn words(&self, span: Range<usize>) -> String {
+        self.tokens[span].iter().map(|t| t.text.as_str()).collect::<Vec<_>>().join(" ")
     }
 
     /// The objects that a clause is about: those it names, else those spoken of before, else the only one.
@@ -58,9 +64,9 @@ impl<'a> Draft<'a> {
             self.subject = Some(named.clone());
             return Ok(named);
         }
-        if let Some(missing) = missing_subject(clause) {
-            self.missing.push(missing);
-            return Err(format!("there is no such object here; {}", self.names()));
+        if let Some(noun) = reference::stranger(clause.phrases()) {
+            let span = clause.phrases()[noun.start].span.start..clause.phrases()[noun.end - 1].span.end;
+            return Err(format!("{}: no such object; {}", self.words(span), self.names()));
         }
         if stands_for_object(clause) {
             return Err(format!("the ground and what stands on it do not move; {}", self.names()));
@@ -237,27 +243,6 @@ pub fn rotate_deg(rotation: DMat3) -> [f64; 3] {
 fn tidy_length(metres: f64) -> f64 {
     let rounded = (metres * 1e6).round() / 1e6;
     if rounded == 0.0 { 0.0 } else { rounded }
-}
-
-/// The words of an object that the scene does not have: unknown words after "the", or right before a verb at the
-/// start, where nothing else says who is meant.
-fn missing_subject(clause: &Clause) -> Option<std::ops::Range<usize>> {
-    let phrases: Vec<_> = clause.phrases().iter().filter(|p| p.sense != Sense::Filler).collect();
-    if phrases.iter().any(|p| p.sense == Sense::It) {
-        return None;
-    }
-    let unknown = |i: usize| phrases.get(i).is_some_and(|p| p.sense == Sense::Unknown);
-    let first = (0..phrases.len()).find(|&i| {
-        if !unknown(i) {
-            return false;
-        }
-        let end = (i..).find(|&j| !unknown(j)).unwrap_or(phrases.len());
-        let after_article = i > 0 && phrases[i - 1].sense == Sense::Article;
-        let before_verb = i == 0 && phrases.get(end).is_some_and(|p| matches!(p.sense, Sense::Verb(_) | Sense::Quality(..)));
-        after_article || before_verb
-    })?;
-    let end = (first..).find(|&j| !unknown(j)).unwrap_or(phrases.len());
-    Some(phrases[first].span.start..phrases[end - 1].span.end)
 }
 
 /// Whether the ground or a collider is what the clause would move: "push the table", not "fall to the table".

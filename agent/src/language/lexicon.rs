@@ -65,7 +65,8 @@ pub const SECTIONS: &[Section] = &[
         entries: entries! {
             Sense::Direction(Direction::Forward) => "forward|forwards|ahead|straight ahead|to the front|frontwards|straight on",
             Sense::Direction(Direction::Backward) => "backward|backwards|back|to the back|rearward|rearwards",
-            Sense::Direction(Direction::Left) => "left|to the left|leftward|leftwards|to its left|sideways|to the side|to one side",
+            Sense::Direction(Direction::Left) => "left|to the left|leftward|leftwards|to its left",
+            Sense::Direction(Direction::Sideways) => "sideways|sidewards|to the side|to one side|to a side",
             Sense::Direction(Direction::Right) => "right|to the right|rightward|rightwards|to its right|to the other side",
             Sense::Direction(Direction::Up) => "up|upward|upwards|straight up|into the air|in the air|up in the air|up into the air|to the sky|skyward|skywards|vertically",
             Sense::Direction(Direction::Down) => "down|downward|downwards|straight down|to the ground below",

@@ -3,8 +3,9 @@
 //! A request is read in four steps, one file each: [`tokens`] (words, numbers, signs), [`phrases`] (stretches of words
 //! with one meaning, from the [`lexicon`], [`numbers`] and the objects' names), [`clause`] (what belongs together), and
 //! [`clauses`] (what it asks for). A clause's readers *take* the phrases that they use; what nobody took, and is not a
-//! small word, is reported word by word. Nothing is guessed in silence: amounts that were not given, corrected
-//! spellings and taken directions are in the gloss.
+//! small word, is reported word by word. A request is done as a whole or not at all: where a clause is refused, or an
+//! amount or a time is left, nothing is changed. Nothing is assumed in silence: amounts that were not given, corrected
+//! spellings, directions and whom a noun was taken for are in the gloss.
 
 mod clause;
 mod clauses;
@@ -15,12 +16,14 @@ mod numbers;
 #[cfg(test)]
 mod page;
 mod phrases;
+mod reference;
 mod say;
 mod sense;
 mod session;
 #[cfg(test)]
 mod tests;
 mod tokens;
+mod unheeded;
 
 use draft::Draft;
 use phrases::{Names, Reading};
@@ -81,6 +84,9 @@ pub struct Context<'a> {
 pub fn understand(text: &str, context: &Context) -> Reply {
     let names = Names::new(context.spec.objects.iter().map(|o| o.name.as_str()));
     let mut reading = phrases::read(tokens::tokenise(text), &names);
+    if context.spec.objects.len() == 1 {
+        reference::presume(&mut reading, 0);
+    }
     if let Some(reason) = session::question(text, &reading) {
         return refused(reason, &reading);
     }
@@ -99,49 +105,59 @@ pub fn understand(text: &str, context: &Context) -> Reply {
 /// A request that is refused as a whole, with the words of it that nobody knows.
 fn refused(reason: String, reading: &Reading) -> Reply {
     let unknown = reading.phrases.iter().filter(|p| p.sense == Sense::Unknown).map(|p| p.span.clone());
-    Reply::Refused { reason, not_understood: words(reading, unknown) }
+    Reply::Refused { reason, not_understood: words(reading, unknown.chain(reading.presumed.iter().cloned())) }
 }
 
 /// Reads clause by clause into edits, starting from `start`.
 fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
     let undone = start != *context.spec;
-    let mut draft = Draft::new(context, start);
+    let mut draft = Draft::new(context, &reading.tokens, start);
     let mut clauses = clause::split(reading.phrases.clone());
     // The world of the turn holds for all of it: "jump 30 cm and do it on the moon" is 30 cm on the moon.
     for clause in &mut clauses {
         clauses::world::ahead(clause, &mut draft);
     }
+    let mut refusals = Vec::new();
     let mut ignored = Vec::new();
     let mut understood = false;
     for clause in &mut clauses {
-        let before = (draft.spec.clone(), draft.gloss.len());
-        match clauses::understand(clause, &mut draft, &reading.tokens) {
+        let before = draft.spec.clone();
+        let result = clauses::understand(clause, &mut draft).and_then(|()| match unheeded::refusal(clause, &draft) {
+            Some(refusal) if clause.took_something() => Err(refusal),
+            _ => Ok(()),
+        });
+        match result {
             Ok(()) => understood |= clause.took_something(),
             Err(reason) => {
-                draft.spec = before.0;
-                draft.gloss.truncate(before.1);
+                // The clauses after it are read all the same, for what is wrong with them.
+                draft.spec = before;
                 clause.refuse();
-                draft.refusals.push(reason);
+                refusals.push(reason);
             }
         }
         ignored.extend(clause.not_understood());
     }
-    ignored.extend(draft.missing.iter().cloned());
+    if !understood || !refusals.is_empty() {
+        ignored.extend(reading.presumed.iter().cloned());
+    }
     let not_understood = words(reading, ignored.into_iter());
+    if !refusals.is_empty() {
+        let rest = if understood { "; nothing of the turn was done" } else { "" };
+        return Reply::Refused { reason: format!("{}{rest}", refusals.join("; ")), not_understood };
+    }
+    if !understood {
+        return Reply::Refused { reason: reason(&draft, &not_understood), not_understood };
+    }
     let edits = context.spec.edits_to(&draft.spec);
     if let Err(error) = context.spec.apply(&edits) {
         return Reply::Refused { reason: error.to_string(), not_understood };
     }
-    let corrections = reading.corrections.iter().map(|(_, said)| said.clone());
-    if !understood {
-        return Reply::Refused { reason: reason(&draft, &not_understood), not_understood };
-    }
-    let mut gloss: Vec<String> = corrections.collect();
+    let mut gloss: Vec<String> = reading.corrections.clone();
+    gloss.extend(reading.presumed.iter().map(|span| format!("{} is taken for {}, the only object here", draft.words(span.clone()), draft.name(0))));
     if undone {
         gloss.push("the turn before is undone".to_owned());
     }
     gloss.append(&mut draft.gloss);
-    gloss.append(&mut draft.refusals);
     gloss.extend(too_late(context, &draft.spec));
     if edits.is_empty() && gloss.is_empty() {
         gloss.push("that is so already".to_owned());
@@ -160,8 +176,9 @@ fn too_late(context: &Context, after: &Spec) -> Vec<String> {
 fn reason(draft: &Draft, not_understood: &[String]) -> String {
     const CAN: &str = "try \"make it jump\", \"drop it from 1 m\", \"push it to the left at 0.5 s\", \"softer\", \"make it of rubber\", \"do it on the moon\", \
                        \"for 3 seconds\", \"look from above\", \"undo that\"";
-    if !draft.refusals.is_empty() {
-        return draft.refusals.join("; ");
+    // "A steel vase", and nothing else: what was said of the steel is the reason.
+    if !draft.gloss.is_empty() {
+        return draft.gloss.join("; ");
     }
     if not_understood.is_empty() {
         return format!("nothing to do in that; {CAN}");

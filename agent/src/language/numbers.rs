@@ -308,6 +308,11 @@ pub const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("fps", 1.0, [0, -1, 0, 0, 1]),
 ];
 
+/// Whether two words name one unit: "meter" and "metres".
+pub fn same_unit(a: &str, b: &str) -> bool {
+    UNITS.iter().any(|(names, ..)| [a, b].iter().all(|word| names.split(' ').any(|name| name == *word)))
+}
+
 fn base_unit(word: &str) -> Option<Unit> {
     let (stem, exponent) = match word.strip_suffix(['2', '3']) {
         Some(stem) => (stem, if word.ends_with('2') { 2 } else { 3 }),

@@ -82,7 +82,9 @@ pub fn page() -> String {
     let mut page = String::from(
         "<!-- Made from the code by `PHYSTALK_WRITE_DOCS=1 cargo test -p phystalk-agent phrases_page`. Do not edit. -->\n\n# Phrases\n\n\
          What the offline phrasebook understands. It is a grammar: any subject, verb, direction, amount and time below go together, and a request may hold \
-         several clauses (`and`, `then`, `but`, commas). Every word counts: it is used, or it is one of the small words at the end, or it is reported. A word of \
+         several clauses (`and`, `then`, `but`, commas). Every word counts: it is used, or it is one of the small words at the end, or it is reported. A request is \
+         done as a whole or not at all: a clause that is refused, or an amount that has no place, refuses all of it. Where the scene has one object, a noun \
+         that nobody knows means it, and that is said. A word of \
          four letters or more may have one slip; what it was read as is said.\n",
     );
     examples(&mut page);

@@ -61,32 +61,49 @@ pub struct Reading {
     pub tokens: Vec<Token>,
     /// The phrases, in order, covering every token.
     pub phrases: Vec<Phrase>,
-    /// Corrections, as sentences, with the token that each concerns.
-    pub corrections: Vec<(usize, String)>,
+    /// Corrections, as sentences.
+    pub corrections: Vec<String>,
+    /// Tokens that were taken for the only object there is.
+    pub presumed: Vec<Range<usize>>,
 }
 
-/// Reads all phrases.
+/// Reads all phrases. A misspelt word is mended first and then read with its neighbours, as if it had been written so:
+/// "1 secnd" is a time.
 pub fn read(mut tokens: Vec<Token>, names: &Names) -> Reading {
-    let mut phrases: Vec<Phrase> = Vec::new();
     let mut corrections = Vec::new();
+    let mut phrases = cover(&tokens, names);
     let mut at = 0;
-    while at < tokens.len() {
-        let found = read_one(&tokens, at, names).or_else(|| {
-            let after_article = phrases.last().is_some_and(|p| p.sense == Sense::Article);
-            let known = correct(&tokens[at].word, names, after_article)?;
-            corrections.push((at, format!("read '{}' as '{known}'", tokens[at].text)));
-            tokens[at].word = known;
-            read_one(&tokens, at, names)
-        });
-        let (sense, length) = found.unwrap_or((Sense::Unknown, 1));
-        phrases.push(Phrase { sense, span: at..at + length });
-        at += length;
+    while let Some(i) = (at..phrases.len()).find(|&i| phrases[i].sense == Sense::Unknown) {
+        let token = phrases[i].span.start;
+        let after_article = i > 0 && phrases[i - 1].sense == Sense::Article;
+        match correct(&tokens[token].word, names, after_article) {
+            Some(known) => {
+                corrections.push(format!("read '{}' as '{known}'", tokens[token].text));
+                tokens[token].word = known;
+                phrases = cover(&tokens, names);
+                // Mended once: a word that is still not understood goes on as it is.
+                at = phrases.iter().position(|p| p.span.start > token).unwrap_or(phrases.len());
+            }
+            None => at = i + 1,
+        }
     }
     lead_measures(&mut phrases);
     scale_gravity(&mut phrases);
     hear_complaints(&mut phrases, &tokens);
     tell_times(&mut phrases);
-    Reading { tokens, phrases, corrections }
+    Reading { tokens, phrases, corrections, presumed: Vec::new() }
+}
+
+/// The longest phrase at each place, one after the other.
+fn cover(tokens: &[Token], names: &Names) -> Vec<Phrase> {
+    let mut phrases: Vec<Phrase> = Vec::new();
+    let mut at = 0;
+    while at < tokens.len() {
+        let (sense, length) = read_one(tokens, at, names).unwrap_or((Sense::Unknown, 1));
+        phrases.push(Phrase { sense, span: at..at + length });
+        at += length;
+    }
+    phrases
 }
 
 /// The longest of: an object's name, a number with its unit, a pattern of the lexicon. A tie goes to the name, then to the lexicon.
@@ -235,7 +252,7 @@ fn tell_times(phrases: &mut [Phrase]) {
     }
 }
 
-/// Words of the lexicon that a misspelt word may have meant; those of `nouns` also after "the".
+/// Words of the lexicon and units that a misspelt word may have meant; those of `nouns` also after "the".
 struct Known {
     all: BTreeSet<&'static str>,
     nouns: BTreeSet<&'static str>,
@@ -266,6 +283,10 @@ static KNOWN: LazyLock<Known> = LazyLock::new(|| {
             }
         }
     }
+    for unit in numbers::UNITS.iter().flat_map(|(names, ..)| names.split(' ')).filter(|w| w.len() >= 4) {
+        known.all.insert(unit);
+        known.nouns.insert(unit);
+    }
     known
 });
 
@@ -275,7 +296,7 @@ static KNOWN: LazyLock<Known> = LazyLock::new(|| {
 /// is never read as "lower". Names of objects are exempt from the latter.
 fn correct(word: &str, names: &Names, after_article: bool) -> Option<String> {
     let letters = word.chars().count();
-    if letters < 4 || !word.chars().all(char::is_alphabetic) {
+    if letters < 4 || KNOWN.all.contains(word) || !word.chars().all(char::is_alphabetic) {
         return None;
     }
     let near = |known: &str| strsim::osa_distance(word, known) == 1;
@@ -295,7 +316,7 @@ fn correct(word: &str, names: &Names, after_article: bool) -> Option<String> {
     // "jumsp" is near "jump" and "jumps": one meaning, so either will do.
     let same = |other: &str| {
         let sense = |w: &str| PATTERNS.get(w).and_then(|p| p.iter().find(|p| p.words.len() == 1)).map(|p| p.sense);
-        sense(other).is_some() && sense(other) == sense(first)
+        (sense(other).is_some() && sense(other) == sense(first)) || numbers::same_unit(first, other)
     };
     rest.iter().all(|other| same(other)).then(|| (*first).to_owned())
 }

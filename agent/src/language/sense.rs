@@ -110,6 +110,8 @@ pub enum Direction {
     Left,
     /// Its right.
     Right,
+    /// To a side, nobody said which: its left.
+    Sideways,
     /// Against gravity's usual way: +z.
     Up,
     /// -z.

@@ -233,7 +233,7 @@ fn step(clause: &mut Clause, around: &mut Around, said: &mut Vec<String>) {
     for direction in directions {
         let words = match direction {
             // To its own left is clockwise about what it looks at, seen from above.
-            Direction::Left | Direction::ScreenLeft | Direction::Clockwise => {
+            Direction::Left | Direction::Sideways | Direction::ScreenLeft | Direction::Clockwise => {
                 around.azimuth -= angle;
                 "goes to the left"
             }

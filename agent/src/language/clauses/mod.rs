@@ -11,11 +11,10 @@ pub mod world;
 use super::clause::Clause;
 use super::draft::{Draft, Refusal};
 use super::sense::{Sense, Unbuilt, Verb};
-use super::tokens::Token;
 
 /// Understands one clause. What it changed stands in the draft; what it did not take is left in the clause.
-pub fn understand(clause: &mut Clause, draft: &mut Draft, tokens: &[Token]) -> Result<(), Refusal> {
-    refuse_unbuilt(clause, draft, tokens)?;
+pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    refuse_unbuilt(clause, draft)?;
     if clause.has(|s| *s == Sense::Condition) {
         return Err("conditions are not built yet: give a time, as in \"at 0.5 s\"".to_owned());
     }
@@ -108,17 +107,16 @@ fn denied(clause: &mut Clause) -> Result<bool, Refusal> {
 }
 
 /// Refuses by name what later versions build. A word that only describes an object that is named ("the wooden vase") is
-/// reported, and the rest of the clause holds.
-fn refuse_unbuilt(clause: &mut Clause, draft: &mut Draft, tokens: &[Token]) -> Result<(), Refusal> {
+/// said, and the rest of the clause holds.
+fn refuse_unbuilt(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let unbuilt: Vec<(Unbuilt, String, bool)> = clause
         .phrases()
         .iter()
         .enumerate()
         .filter_map(|(i, phrase)| match phrase.sense {
             Sense::Unbuilt(what) => {
-                let words: Vec<&str> = tokens[phrase.span.clone()].iter().map(|t| t.text.as_str()).collect();
                 let describes = matches!(clause.phrases().get(i + 1).map(|p| &p.sense), Some(Sense::Objects(_)));
-                Some((what, words.join(" "), describes))
+                Some((what, draft.words(phrase.span.clone()), describes))
             }
             _ => None,
         })
@@ -128,7 +126,7 @@ fn refuse_unbuilt(clause: &mut Clause, draft: &mut Draft, tokens: &[Token]) -> R
         if !describes {
             return Err(reason);
         }
-        draft.refusals.push(reason);
+        draft.gloss.push(reason);
     }
     Ok(())
 }
@@ -137,13 +135,15 @@ fn refuse_unbuilt(clause: &mut Clause, draft: &mut Draft, tokens: &[Token]) -> R
 pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
     let names: Vec<String> = phystalk::spec::presets::ELASTIC.iter().map(|p| p.name.to_owned()).collect();
     let elastic = format!("elastic ones are: {}", names.join(", "));
+    // "Liquid" says itself what it is.
+    let is = |kind: &str| if kind.ends_with(words) { String::new() } else { format!("{words} is {kind}: ") };
     match what {
-        Unbuilt::Liquid => format!("{words} is a liquid: liquids are not built yet; {elastic}"),
-        Unbuilt::Rigid => format!("{words} is rigid: rigid bodies are not built yet; {elastic}, and \"much stiffer\" comes near"),
-        Unbuilt::Plastic => format!("{words} is plastic: plastic materials are not built yet; {elastic}"),
-        Unbuilt::Viscoplastic => format!("{words} is viscoplastic: viscoplastic materials are not built yet; {elastic}"),
+        Unbuilt::Liquid => format!("{}liquids are not built yet; {elastic}", is("a liquid")),
+        Unbuilt::Rigid => format!("{}rigid bodies are not built yet; {elastic}, and \"much stiffer\" comes near", is("rigid")),
+        Unbuilt::Plastic => format!("{}plastic materials are not built yet; {elastic}", is("plastic")),
+        Unbuilt::Viscoplastic => format!("{}viscoplastic materials are not built yet; {elastic}", is("viscoplastic")),
         Unbuilt::Grains => format!("{words} is granular: sand and snow are not built yet; {elastic}"),
-        Unbuilt::Gas => format!("{words} is a gas: gases are not built; {elastic}"),
+        Unbuilt::Gas => format!("{}gases are not built; {elastic}", is("a gas")),
         Unbuilt::Muscle => format!("{words}: things that move themselves are not built yet; jumps, pushes, throws and spins are"),
         Unbuilt::Heat => format!("{words}: heat is not built yet; {elastic}"),
         Unbuilt::Fracture => format!("{words}: breaking is not built yet; {elastic}"),

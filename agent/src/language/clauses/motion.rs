@@ -270,7 +270,7 @@ fn spin(verb: Verb, clause: &mut Clause, draft: &mut Draft, objects: &[usize], a
         // The axis is that of the turn a body makes when it rolls that way; a flat turn is about the vertical.
         let axis = directions.iter().fold(DVec3::ZERO, |axis, direction| {
             axis + match (verb, direction) {
-                (Verb::Spin, Direction::Left) | (_, Direction::Anticlockwise) => DVec3::Z,
+                (Verb::Spin, Direction::Left | Direction::Sideways) | (_, Direction::Anticlockwise) => DVec3::Z,
                 (Verb::Spin, Direction::Right) | (_, Direction::Clockwise) => -DVec3::Z,
                 (_, Direction::Up | Direction::Down) => DVec3::ZERO,
                 (_, Direction::Axis(..)) => frame.unit(*direction),

@@ -162,7 +162,7 @@ pub fn turn(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<(), Re
         let frame = draft.frame(object);
         let axis = directions.iter().fold(DVec3::ZERO, |axis, direction| {
             axis + match (verb, direction) {
-                (Verb::Turn, Direction::Left) | (_, Direction::Anticlockwise) => DVec3::Z,
+                (Verb::Turn, Direction::Left | Direction::Sideways) | (_, Direction::Anticlockwise) => DVec3::Z,
                 (Verb::Turn, Direction::Right) | (_, Direction::Clockwise) => -DVec3::Z,
                 (_, Direction::Up | Direction::Down) => DVec3::ZERO,
                 (_, Direction::Axis(..)) => frame.unit(*direction),

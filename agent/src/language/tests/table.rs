@@ -139,6 +139,66 @@ fn slips_are_read_and_said_but_other_words_are_not() {
     assert!(gloss(&stage.ask("make it sofetr")).starts_with("read 'sofetr' as 'softer'"));
     assert!(gloss(&stage.ask("turn it into jely")).starts_with("read 'jely' as 'jelly'"));
     // A letter away from "lower", but not with the same beginning; a noun where "place" would be a verb.
-    assert_eq!(line(&stage.ask("push the flower")), "refused ?flower");
-    assert_eq!(line(&stage.ask("push the plate")), "refused ?plate");
+    let two = Stage::of(&["vase", "lego_bulldozer"]);
+    assert_eq!(line(&two.ask("push the flower")), "refused ?flower");
+    assert_eq!(line(&two.ask("push the plate")), "refused ?plate");
+}
+
+#[test]
+fn a_mended_word_is_read_with_its_neighbours() {
+    let stage = Stage::vase();
+    assert_eq!(line(&stage.ask("drop it from 30 cm for 1 secnd")), line(&stage.ask("drop it from 30 cm for 1 second")));
+    assert_eq!(line(&stage.ask("make it jmup 20cm at half a seccond")), line(&stage.ask("make it jump 20cm at half a second")));
+    assert_eq!(line(&stage.ask("lift it 2 metrs")), line(&stage.ask("lift it 2 metres")));
+}
+
+#[test]
+fn an_unknown_noun_is_the_only_object() {
+    let capture = Stage::of(&["my-capture"]);
+    let same = |said: &str, plain: &str| assert_eq!(line(&capture.ask(said)), line(&capture.ask(plain)), "{said}");
+    same("make the vase jump up and fall back", "make it jump up and fall back");
+    same("push the toy car to the left", "push it to the left");
+    same("drop the rubber duckling from 1 m", "drop it of rubber from 1 m");
+    same("vases jump", "jump");
+    same("the vase jumps and the vase is softer", "it jumps and it is softer");
+    let said = gloss(&capture.ask("make the vase jump up and fall back"));
+    assert!(said.starts_with("vase is taken for my-capture, the only object here"), "{said}");
+    // Not where a word stands for a place, a manner or something else.
+    assert_eq!(line(&capture.ask("throw it at the wall")), format!("{} ?wall", line(&capture.ask("throw it"))));
+    // Among several objects nobody can know: the culprit is named, and nothing is done.
+    let two = Stage::of(&["vase", "lego_bulldozer"]);
+    let reply = two.ask("push the vase left and make the flowers jump");
+    assert_eq!(line(&reply), "refused ?flowers");
+    assert!(gloss(&reply).starts_with("flowers: no such object; there are: vase and lego_bulldozer"), "{}", gloss(&reply));
+}
+
+#[test]
+fn a_refused_clause_refuses_the_turn() {
+    let stage = Stage::vase();
+    for text in ["turn it into lava and push it sideways", "push it left and make it of steel", "make it jump and make the table jump"] {
+        let reply = stage.ask(text);
+        assert!(gloss(&reply).ends_with("nothing of the turn was done"), "{text}: {reply:?}");
+    }
+}
+
+#[test]
+fn an_amount_that_nobody_takes_refuses_the_turn() {
+    let stage = Stage::vase();
+    for (text, culprit, instead) in [
+        ("push it 2 m to the left", "\"2 m\"", "move it 2 m to the left"),
+        ("bounce three times", "\"three times\"", "bouncier"),
+        ("tip it over on the moon in 1 second", "\"1 second\"", "push it at 1 s"),
+        ("jump twice", "\"twice\"", "jump at 1 s"),
+        ("make it softer at 1 s", "\"1 s\"", "push it left at 1 s"),
+        ("push it left and make it 3 m softer", "\"3 m\"", "jump 30 cm"),
+        ("jump for 20 percent", "\"20 percent\"", "softer"),
+    ] {
+        let reply = stage.ask(text);
+        assert!(matches!(reply, Reply::Refused { .. }), "{text}: {reply:?}");
+        let said = gloss(&reply);
+        assert!(said.contains(culprit) && said.contains(instead), "{text}: {said}");
+    }
+    // A word that says no amount is reported, and the rest is done.
+    assert_eq!(line(&stage.ask("push it sternly to the left")), "velocity_m_s = [0.0 1.5 0.0] ?sternly");
+    assert!(gloss(&stage.ask("push it sideways")).contains("sideways, to its left (no side said)"));
 }

@@ -1,0 +1,47 @@
+//! Nouns that nobody knows, where an object is meant. In a scene of one object that one is meant, whatever it is called:
+//! a capture is named after its file, and people say what they see. Among several objects nobody can know.
+
+use super::phrases::{Phrase, Reading};
+use super::sense::{Preposition, Sense};
+use std::ops::Range;
+
+/// Reads unknown nouns in the place of an object as `object`, the only one, and notes their tokens as presumed.
+pub fn presume(reading: &mut Reading, object: usize) {
+    let ends = |p: &Phrase| p.sense == Sense::Separator;
+    let mut start = 0;
+    while start < reading.phrases.len() {
+        let end = (start..reading.phrases.len()).find(|&i| ends(&reading.phrases[i])).unwrap_or(reading.phrases.len());
+        if let Some(noun) = stranger(&reading.phrases[start..end]) {
+            let noun = start + noun.start..start + noun.end;
+            reading.presumed.push(reading.phrases[noun.start].span.start..reading.phrases[noun.end - 1].span.end);
+            reading.phrases[noun].iter_mut().for_each(|p| p.sense = Sense::Objects(vec![object]));
+        }
+        start = end + 1;
+    }
+}
+
+/// The phrases of a noun that nobody knows and that stands where an object is named: what a verb moves ("push the chair
+/// left"), what has a part ("the top of the chair"), or who does something ("the chair jumps"). None where the stretch says otherwise whom it means.
+pub fn stranger(phrases: &[Phrase]) -> Option<Range<usize>> {
+    if phrases.iter().any(|p| matches!(p.sense, Sense::Objects(_) | Sense::It | Sense::All)) {
+        return None;
+    }
+    let unknown = |i: usize| phrases.get(i).is_some_and(|p| p.sense == Sense::Unknown);
+    (0..phrases.len()).filter(|&i| unknown(i) && (i == 0 || !unknown(i - 1))).find_map(|i| {
+        let end = (i..).find(|&j| !unknown(j)).unwrap_or(phrases.len());
+        let said = &phrases[..i];
+        let told = said.iter().rposition(|p| !describes(&p.sense)).map(|at| &phrases[at].sense);
+        let article = told == Some(&Sense::Article);
+        let before = said.iter().rev().map(|p| &p.sense).find(|s| !describes(s) && **s != Sense::Article);
+        let begins = matches!(before, None | Some(Sense::Filler));
+        let moved = matches!(before, Some(Sense::Verb(_)));
+        let has = article && before == Some(&Sense::Preposition(Preposition::Of));
+        let does = matches!(phrases.get(end).map(|p| &p.sense), Some(Sense::Verb(_) | Sense::Quality(..)));
+        ((article && (begins || moved || has)) || (begins && does)).then_some(i..end)
+    })
+}
+
+/// Adjectives between an article and its noun.
+fn describes(sense: &Sense) -> bool {
+    matches!(sense, Sense::Material(_) | Sense::Unbuilt(_) | Sense::Quality(..))
+}
