@@ -87,6 +87,29 @@ fn a_session_in_a_terminal() {
 }
 
 #[test]
+fn another_size_is_drawn_anew() {
+    let desk = Desk::new();
+    let Some(tmux) = Tmux::start(&desk, "resized", &format!("block.ply {SMALL}")) else { return };
+    tmux.wait_for("say what should happen, or /help");
+    for (width, height) in [("60", "16"), ("120", "40"), ("40", "12"), ("100", "30")] {
+        tmux.tmux(&["resize-window", "-x", width, "-y", height]);
+        // The line over the composer is as wide as the screen, and nothing of it is left from before.
+        let edge = "─".repeat(width.parse().unwrap());
+        let screen = tmux.wait_for(&edge);
+        assert_eq!(screen.lines().filter(|l| l.contains('─')).collect::<Vec<_>>(), [edge.as_str()], "{screen}");
+        tmux.wait_for("say what should happen, or /help");
+    }
+    // A size that changes several times at once, and a key that comes in between.
+    for width in ["90", "50", "70"] {
+        tmux.tmux(&["resize-window", "-x", width, "-y", "24"]);
+    }
+    tmux.keys(&["/log", "Enter"]);
+    tmux.wait_for(&"─".repeat(70));
+    tmux.keys(&["/quit", "Enter"]);
+    tmux.wait_for("exit code 0");
+}
+
+#[test]
 fn a_termination_gives_the_terminal_back() {
     let desk = Desk::new();
     let Some(tmux) = Tmux::start(&desk, "terminated", &format!("block.ply {SMALL}")) else { return };

@@ -145,7 +145,7 @@ fn attend(app: &mut App, screen: &mut Screen, inbox: &Receiver<Message>, desk: &
         // All that waits is taken before the next drawing: a burst of frames is one drawing.
         for message in message.into_iter().chain(inbox.try_iter()) {
             changed = true;
-            let effects = take(app, screen, message)?;
+            let effects = take(app, message);
             leave |= act(app, screen, desk, effects)?;
         }
         changed |= app.pane.advance(Instant::now());
@@ -153,21 +153,18 @@ fn attend(app: &mut App, screen: &mut Screen, inbox: &Receiver<Message>, desk: &
     Ok(())
 }
 
-fn take(app: &mut App, screen: &mut Screen, message: Message) -> Result<Vec<Effect>, Failure> {
+fn take(app: &mut App, message: Message) -> Vec<Effect> {
     let now = Instant::now();
-    Ok(match message {
+    match message {
         Message::Input(Input::Key(key)) => app.key(key, now),
         Message::Input(Input::Paste(text)) => {
             app.paste(&text);
             Vec::new()
         }
-        Message::Input(Input::Resize(..)) => {
-            screen.terminal.autoresize()?;
-            vec![Effect::Redraw]
-        }
+        Message::Input(Input::Resize(..)) => vec![Effect::Redraw],
         Message::Input(_) => Vec::new(),
         Message::Update(update) => app.update(update, now),
-    })
+    }
 }
 
 /// Does what the interface asked for; whether to leave.
@@ -189,7 +186,7 @@ fn act(app: &mut App, screen: &mut Screen, desk: &Desk, effects: Vec<Effect>) ->
             },
             Effect::Redraw => {
                 app.pane.repaint();
-                screen.terminal.clear()?;
+                screen.start_over()?;
             }
             Effect::Quit => return Ok(true),
         }

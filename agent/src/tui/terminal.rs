@@ -34,6 +34,13 @@ impl Screen {
         Ok(Screen { terminal: Terminal::new(CrosstermBackend::new(io::stdout()))?, errors })
     }
 
+    /// Clears the screen, of whatever size it is now, so that the next drawing sends everything. The terminal is not
+    /// asked where its cursor is (as `Terminal::clear` does): the keyboard's thread would take the answer.
+    pub fn start_over(&mut self) -> io::Result<()> {
+        let size = self.terminal.size()?;
+        self.terminal.resize(size.into())
+    }
+
     /// Remembers that pictures have to be removed from the terminal's memory at the end.
     pub fn painted_by(&self, painter: Option<Painter>) {
         crash::on_crash(move || give_back(painter));
