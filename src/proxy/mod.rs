@@ -21,7 +21,7 @@ mod young;
 mod tests;
 
 pub use nearest::nearest;
-pub use young::{YoungAuto, young_auto};
+pub use young::{Stance, YoungAuto, young_auto};
 
 use crate::scene::{Gaussians, morton_order};
 use crate::spec::ProxyKind;
@@ -29,7 +29,7 @@ use body::Body;
 use glam::Vec3;
 
 /// Version of this room, for stage keys.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// Share of the solid whose loss is worth a warning.
 const NOTABLE_SHARE: f64 = 1e-3;
 
@@ -63,6 +63,8 @@ pub struct Solid {
     pub spacing_m: f32,
     /// Volume of the solid; follows from the Gaussians alone, not from the cell.
     pub volume_total_m3: f32,
+    /// How stiff it has to be to stand.
+    pub stance: Stance,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -136,24 +138,20 @@ fn shape(gaussians: &Gaussians, ground_m: f32) -> Result<Shape, ProxyError> {
     Ok(Shape { density, solid, joined })
 }
 
-/// The convex hull of the centres on the same grid.
-fn hull_shape(gaussians: &Gaussians, ground_m: f32) -> Result<Shape, ProxyError> {
-    let density = density::rasterise(gaussians, ground_m, fill::CLOSING_SPACINGS)?;
-    let solid = hull::solid(&density.grid, gaussians)?;
-    Ok(Shape { density, solid, joined: join::Joined::default() })
-}
-
 /// Makes a solid of an object's Gaussians and fills it with particles.
 pub fn build(request: &ProxyRequest) -> Result<Solid, ProxyError> {
-    let Shape { density, solid, joined } = match request.kind {
-        ProxyKind::Voxel => shape(request.gaussians, request.ground_m)?,
-        ProxyKind::Hull => hull_shape(request.gaussians, request.ground_m)?,
-    };
+    let Shape { density, mut solid, mut joined } = shape(request.gaussians, request.ground_m)?;
+    let spacing_m = 0.5 * request.cell_m;
     let extent_m = density.grid.size.as_vec3().max_element() * density.grid.voxel_m;
     let cell_error = ProxyError::Cell { cell_m: request.cell_m, extent_m };
-    let spacing_m = 0.5 * request.cell_m;
     if !(spacing_m > 0.0 && spacing_m.is_finite()) {
         return Err(cell_error);
+    }
+    // The thing stands as what it is, whatever it is simulated as.
+    let stance = young::stance(request.gaussians, &density.grid, &solid);
+    if request.kind == ProxyKind::Hull {
+        solid = hull::solid(&density.grid, request.gaussians)?;
+        joined = join::Joined::default();
     }
     let skin_m = density.spacing_m;
     let warnings = warnings(density.wide, &joined);
@@ -163,11 +161,11 @@ pub fn build(request: &ProxyRequest) -> Result<Solid, ProxyError> {
     if samples.is_empty() {
         return Err(ProxyError::Empty { gaussians: request.gaussians.len() });
     }
-    Ok(finish(&body, &samples, spacing_m, skin_m, warnings))
+    Ok(Solid { stance, warnings, ..finish(&body, &samples, spacing_m, skin_m) })
 }
 
 /// Orders the samples along a Morton curve and shares the body's volume among them.
-fn finish(body: &Body, samples: &[sample::Sample], spacing_m: f32, skin_m: f32, warnings: Vec<String>) -> Solid {
+fn finish(body: &Body, samples: &[sample::Sample], spacing_m: f32, skin_m: f32) -> Solid {
     let positions: Vec<Vec3> = samples.iter().map(|s| s.position).collect();
     let order = morton_order(&positions);
     let share = body.volume_m3 / samples.iter().map(|s| f64::from(s.fraction)).sum::<f64>();
@@ -180,7 +178,8 @@ fn finish(body: &Body, samples: &[sample::Sample], spacing_m: f32, skin_m: f32, 
         inner,
         spacing_m,
         volume_total_m3: body.volume_m3 as f32,
-        warnings,
+        stance: Stance::default(),
+        warnings: Vec::new(),
     }
 }
 

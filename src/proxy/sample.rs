@@ -3,7 +3,11 @@
 //! A lattice cell that the surface cuts is probed on a finer lattice; the signed distance says how
 //! much of each probe's share is solid, and the particle takes that share of the volume and stands
 //! at its centre of mass. Inner cells are whole. Seeded jitter breaks up the rows, at most a fifth
-//! of the spacing each way, so that no two particles come closer than three fifths of it.
+//! of the spacing each way, so that no two of these particles come closer than three fifths of it.
+//!
+//! Threads and sheets that hold one light particle across would have no stiffness in bending: on its
+//! neutral line a bent beam is not strained, and nothing else would feel the bend. Light particles
+//! that found no heir are four instead, a fraction of the spacing apart.
 
 use super::body::Body;
 use glam::{UVec3, Vec3};
@@ -16,6 +20,10 @@ const JITTER: f32 = 0.2;
 const LEAST_FRACTION: f32 = 0.1;
 /// How full such a neighbour is at least.
 const HEIR_FRACTION: f32 = 0.5;
+/// What stays lighter than [`LEAST_FRACTION`] is spread this far each way, in spacings.
+const SPREAD: f32 = 0.25;
+/// Every second corner of a cube.
+const TETRAHEDRON: [Vec3; 4] = [Vec3::ONE, Vec3::new(1.0, -1.0, -1.0), Vec3::new(-1.0, 1.0, -1.0), Vec3::new(-1.0, -1.0, 1.0)];
 /// Probes along an edge of a lattice cell, at most.
 const MOST_PROBES: f32 = 8.0;
 /// The lattice never has more cells.
@@ -50,7 +58,7 @@ pub(super) fn sample(body: &Body, spacing_m: f32, seed: u64) -> Option<Vec<Sampl
     }
     let lattice = Lattice { low: body.grid.low, spacing_m, size: size.as_uvec3().max(UVec3::ONE) };
     let slabs: Vec<Vec<(UVec3, Sample)>> = (0..lattice.size.z).into_par_iter().map(|z| lattice.slab(body, z, seed)).collect();
-    Some(lattice.fold_light(slabs.concat()))
+    Some(lattice.fold_light(slabs.concat()).into_iter().flat_map(|sample| lattice.spread(sample)).collect())
 }
 
 impl Lattice {
@@ -133,6 +141,19 @@ impl Lattice {
             }
         }
         samples.into_iter().map(|(_, sample)| sample).filter(|sample| sample.fraction > 0.0).collect()
+    }
+
+    /// A light particle as the corners of a tetrahedron about it, which bends like something half a
+    /// spacing thick whichever way it is turned; others as they are.
+    fn spread(&self, sample: Sample) -> Vec<Sample> {
+        if sample.fraction >= LEAST_FRACTION {
+            return vec![sample];
+        }
+        let apart_m = SPREAD * self.spacing_m;
+        // None gets below the floor.
+        let centre = sample.position.with_z(sample.position.z.max(self.low.z + 2.0 * apart_m));
+        let corner = |side: Vec3| Sample { position: centre + side * apart_m, fraction: 0.25 * sample.fraction };
+        TETRAHEDRON.map(corner).to_vec()
     }
 }
 

@@ -6,8 +6,8 @@
 //! bound of its major parts. Slender details that need more, a thin shoot or one of several stems
 //! that carry a head together, get it for themselves.
 
+use super::grid::Grid;
 use super::sections::{Cut, Sections};
-use super::{Shape, shape};
 use crate::scene::Gaussians;
 use std::f64::consts::PI;
 
@@ -24,6 +24,16 @@ const MAJOR_SHARE: f64 = 0.02;
 /// A local value within this factor of the object's is not worth a difference.
 const NOTABLE: f64 = 1.05;
 
+/// How stiff an object has to be to stand, over its weight: E = density * g * this, metres. It follows
+/// from the Gaussians alone, not from a solver's cell or a quality.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stance {
+    /// Of its major parts.
+    pub whole_m: f64,
+    /// Where each Gaussian is.
+    pub local_m: Vec<f32>,
+}
+
 /// The automatic stiffness of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct YoungAuto {
@@ -35,46 +45,48 @@ pub struct YoungAuto {
     pub warnings: Vec<String>,
 }
 
-/// Chooses the stiffness from the Gaussians alone: not from a solver's cell, a quality or the spec's
-/// gravity. Where they make no solid the softest value stands, and [`super::build`] says why.
-pub fn young_auto(gaussians: &Gaussians, ground_m: f32, density_kg_m3: f64) -> YoungAuto {
-    let Ok(Shape { density, solid, .. }) = shape(gaussians, ground_m) else {
-        return YoungAuto { value_pa: RANGE_PA.0, local: vec![RANGE_PA.0 as f32; gaussians.len()], warnings: Vec::new() };
-    };
-    let sections = Sections::find(&density.grid, &solid);
-    let weight = density_kg_m3 * CAPTURE_GRAVITY_M_S2;
+/// Measures the solid that an object's Gaussians make.
+pub(super) fn stance(gaussians: &Gaussians, grid: &Grid, solid: &[bool]) -> Stance {
+    let sections = Sections::find(grid, solid);
     let total_m3 = sections.volume_m3();
-    let mut needed_pa = 0.0f64;
+    let mut whole_m = 0.0f64;
     let mut of_section = vec![0.0f64; sections.count()];
     for cut in sections.cuts() {
-        let column = column_pa(weight, cut.height_m, cut.area_m2);
+        let column = column_m(cut.height_m, cut.area_m2);
         if cut.volume_m3 >= MAJOR_SHARE * total_m3 {
-            needed_pa = needed_pa.max(column);
+            whole_m = whole_m.max(column);
         }
         for &section in &cut.sections {
-            of_section[section as usize] = column.max(legs_pa(weight, &cut, &sections, section));
+            of_section[section as usize] = column.max(legs_m(&cut, &sections, section));
         }
     }
+    let local_m = gaussians.mean.iter().map(|&p| sections.at(grid, p).map_or(0.0, |s| of_section[s as usize] as f32)).collect();
+    Stance { whole_m, local_m }
+}
+
+/// Chooses the stiffness of an object of this density; the spec's gravity is not asked.
+pub fn young_auto(stance: &Stance, density_kg_m3: f64) -> YoungAuto {
+    let weight_n_m3 = density_kg_m3 * CAPTURE_GRAVITY_M_S2;
+    let needed_pa = weight_n_m3 * stance.whole_m;
     let value_pa = needed_pa.clamp(RANGE_PA.0, RANGE_PA.1);
-    let needs: Vec<f64> = gaussians.mean.iter().map(|&p| sections.at(&density.grid, p).map_or(0.0, |s| of_section[s as usize])).collect();
+    let needs: Vec<f64> = stance.local_m.iter().map(|&m| weight_n_m3 * f64::from(m)).collect();
     let local = needs.iter().map(|&need| if need > NOTABLE * value_pa { need.min(LOCAL_MOST_PA) as f32 } else { value_pa as f32 }).collect();
     YoungAuto { value_pa, local, warnings: warnings(value_pa, needed_pa, &needs) }
 }
 
-/// Greenhill's bound of a round column of this height and cut, with the safety factor, Pa.
-fn column_pa(weight_n_m3: f64, height_m: f64, area_m2: f64) -> f64 {
-    SAFETY * 4.0 * weight_n_m3 * height_m.powi(3) * PI / (7.84 * area_m2)
+/// Greenhill's bound of a round column of this height and cut, with the safety factor, over its weight.
+fn column_m(height_m: f64, area_m2: f64) -> f64 {
+    SAFETY * 4.0 * height_m.powi(3) * PI / (7.84 * area_m2)
 }
 
 /// What one of several legs needs: the part's weight, shared by area, on a leg held at both ends that
-/// may sway (Euler: P = pi^2 E I / l^2 with I = A r^2 / 4), with the safety factor, Pa.
-fn legs_pa(weight_n_m3: f64, cut: &Cut, sections: &Sections, leg: u32) -> f64 {
+/// may sway (Euler: P = pi^2 E I / l^2 with I = A r^2 / 4), with the safety factor, over the weight.
+fn legs_m(cut: &Cut, sections: &Sections, leg: u32) -> f64 {
     if cut.sections.len() < 2 {
         return 0.0;
     }
-    let stress_pa = weight_n_m3 * cut.volume_m3 / cut.area_m2;
     let radius_squared = sections.area_m2(leg) / PI;
-    SAFETY * stress_pa * 4.0 * sections.leg_length_m(leg).powi(2) / (PI * PI * radius_squared)
+    SAFETY * cut.volume_m3 / cut.area_m2 * 4.0 * sections.leg_length_m(leg).powi(2) / (PI * PI * radius_squared)
 }
 
 fn warnings(value_pa: f64, needed_pa: f64, needs: &[f64]) -> Vec<String> {

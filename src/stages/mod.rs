@@ -18,6 +18,8 @@ mod run;
 mod segments;
 mod still;
 mod summary;
+#[cfg(test)]
+mod tests;
 
 pub use derive::lookup;
 pub use engine::{Engine, Report};

@@ -3,7 +3,7 @@
 
 use super::keys::{self, StillKeys};
 use super::{Action, EngineError, pack};
-use crate::proxy::{self, ProxyRequest, Solid};
+use crate::proxy::{self, ProxyRequest, Solid, Stance};
 use crate::scene::{self, Format, Gaussians, Loaded, SceneFrame};
 use crate::skin::{self, Bound};
 use crate::spec::{Auto, Axis, Spec};
@@ -224,7 +224,8 @@ fn keep_solids(store: &Store, key: &str, solids: &[Solid]) -> Result<(), EngineE
         pack::write(&entry, &format!("{index}.position"), &positions)?;
         pack::write(&entry, &format!("{index}.volume"), &solid.volume_m3)?;
         pack::write(&entry, &format!("{index}.inner"), &inner)?;
-        rows.push(json!({ "fill_ratio": solid.fill_ratio, "spacing_m": solid.spacing_m, "volume_total_m3": solid.volume_total_m3, "warnings": solid.warnings }));
+        pack::write(&entry, &format!("{index}.stance"), &solid.stance.local_m)?;
+        rows.push(json!({ "stance_m": solid.stance.whole_m, "fill_ratio": solid.fill_ratio, "spacing_m": solid.spacing_m, "volume_total_m3": solid.volume_total_m3, "warnings": solid.warnings }));
     }
     entry.finish(json!({ "solids": rows }))?;
     Ok(())
@@ -233,6 +234,7 @@ fn keep_solids(store: &Store, key: &str, solids: &[Solid]) -> Result<(), EngineE
 /// Numbers of a solid that are not arrays.
 #[derive(serde::Deserialize)]
 struct SolidRow {
+    stance_m: f64,
     fill_ratio: f32,
     spacing_m: f32,
     volume_total_m3: f32,
@@ -243,10 +245,11 @@ fn read_solids(entry: &crate::store::Entry) -> Result<Option<Vec<Solid>>, Engine
     let Some(Ok(rows)) = entry.meta().get("solids").map(|v| serde_json::from_value::<Vec<SolidRow>>(v.clone())) else { return Ok(None) };
     let mut solids = Vec::new();
     for (index, row) in rows.into_iter().enumerate() {
-        let (Some(position), Some(volume_m3), Some(inner)) = (
+        let (Some(position), Some(volume_m3), Some(inner), Some(local_m)) = (
             pack::read::<[f32; 3]>(entry, &format!("{index}.position"))?,
             pack::read::<f32>(entry, &format!("{index}.volume"))?,
             pack::read::<u8>(entry, &format!("{index}.inner"))?,
+            pack::read::<f32>(entry, &format!("{index}.stance"))?,
         ) else {
             return Ok(None);
         };
@@ -257,6 +260,7 @@ fn read_solids(entry: &crate::store::Entry) -> Result<Option<Vec<Solid>>, Engine
             fill_ratio: row.fill_ratio,
             spacing_m: row.spacing_m,
             volume_total_m3: row.volume_total_m3,
+            stance: Stance { whole_m: row.stance_m, local_m },
             warnings: row.warnings,
         });
     }

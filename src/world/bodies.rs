@@ -54,7 +54,7 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     let Material::Elastic(elastic) = object.material;
     let density = elastic.density_kg_m3;
     let members = prepared.gaussians.subset(&prepared.members(index as u32, false));
-    let auto = proxy::young_auto(&members, prepared.ground_m as f32, density);
+    let auto = proxy::young_auto(&solid.stance, density);
     let count = solid.position_m.len();
     let young_pa = elastic.young_pa.unwrap_or(auto.value_pa);
     let standing = object.rest == Rest::AsCaptured;

@@ -1,0 +1,96 @@
+//! As captured, so at rest, as it is seen: Gaussian by Gaussian, from the scene's file to skinning.
+
+use super::engine::Engine;
+use super::{Quality, RunOptions};
+use crate::Stop;
+use crate::gpu::{DeviceRequest, Gpu};
+use crate::scene::{self, Gaussians};
+use crate::skin::{Bound, twin};
+use crate::spec::{Auto, Axis, Material, Spec, Weights};
+use crate::store::Store;
+use crate::world::bodies::matter;
+use crate::world::measure::MOTION_WORDS;
+use crate::world::{Prepared, World};
+use glam::Vec3;
+use std::path::Path;
+
+/// How far from its captured place a scene left alone is seen, as shares of its height: the largest
+/// over all Gaussians, at each of some frames.
+fn seen_moving(spec: &Spec, base: &Path, frames: &[u32]) -> Vec<f32> {
+    let folder = tempfile::tempdir().unwrap();
+    let mut engine = Engine::new(Store::open(Some(folder.path()), folder.path()).unwrap(), DeviceRequest::default());
+    let options = RunOptions { quality: Some(Quality::Draft), ..Default::default() };
+    let ready = engine.ready(spec, base, &options).unwrap();
+    let solids = engine.solids(spec, &ready).unwrap().value;
+    let bound = engine.bound(spec, &ready, &solids).unwrap().value;
+    let prepared = &ready.prepared.value;
+    let matter = matter(spec, prepared, &solids);
+    let (gpu, stop) = (Gpu::shared_for_tests().unwrap(), Stop::default());
+    let mut world = World::new(&gpu, spec, &matter, &ready.resolved).unwrap();
+    world.prestress(spec, &stop, &mut |_| {}).unwrap();
+    world.place(spec, &matter).unwrap();
+    let rest = &matter.particles.position_m;
+    let height = prepared.object_facts(spec)[0].height_m() as f32;
+    let mut moved = Vec::new();
+    for frame in 1..=frames[frames.len() - 1] {
+        world.step_frame(&stop).unwrap();
+        if frames.contains(&frame) {
+            world.show();
+            let motion: Vec<[u32; MOTION_WORDS]> = gpu.read(world.motion(), rest.len()).unwrap();
+            moved.push(farthest_m(prepared, &bound, &motion, rest) / height);
+        }
+    }
+    println!("{} particles, seen to move by {moved:?} of their height", rest.len());
+    moved
+}
+
+/// How far the Gaussian that moved most is from where it was captured.
+fn farthest_m(prepared: &Prepared, bound: &Bound, motion: &[[u32; MOTION_WORDS]], rest: &[Vec3]) -> f32 {
+    let deltas: Vec<_> = motion.iter().zip(rest).map(|(m, &p)| twin::delta(*m, p, Vec3::ZERO, Weights::Exact)).collect();
+    let moved_m = |(g, mean): (usize, &Vec3)| {
+        let mut record = [0.0; 16];
+        record[..3].copy_from_slice(&mean.to_array());
+        Vec3::from_slice(&twin::blend(&record, g, bound, &deltas, Vec3::ZERO, Weights::Exact)).distance(*mean)
+    };
+    prepared.gaussians.mean.iter().enumerate().map(moved_m).fold(0.0, f32::max)
+}
+
+/// A block of Gaussians, and a twig of single ones that stands out of its side.
+fn twig() -> Gaussians {
+    let block = (0..10 * 10 * 15).map(|i| Vec3::new((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32) * 0.02);
+    let twig = (0..16).map(|i| Vec3::new(0.19 + 0.01 * i as f32, 0.09, 0.2));
+    let mut gaussians = Gaussians::default();
+    for (mean, size) in block.map(|p| (p, 0.009)).chain(twig.map(|p| (p, 0.003))) {
+        gaussians.mean.push(mean);
+        gaussians.scale.push(Vec3::splat(size));
+        gaussians.rotation.push([1.0, 0.0, 0.0, 0.0]);
+        gaussians.opacity.push(0.9);
+        gaussians.sh.extend([0.8, 0.1, -0.3]);
+    }
+    gaussians
+}
+
+#[test]
+fn a_twig_thinner_than_the_grid_sees_stands_as_captured() {
+    let folder = tempfile::tempdir().unwrap();
+    scene::write(&folder.path().join("twig.ply"), &twig()).unwrap();
+    let mut spec = Spec::of_scene("twig.ply");
+    spec.scene.up = Auto::Value(Axis::PlusZ);
+    let Material::Elastic(elastic) = &mut spec.objects[0].material;
+    elastic.young_pa = Auto::Value(2e5);
+    spec.solver.cells_across = Auto::Value(10);
+    let moved = seen_moving(&spec, folder.path(), &[10, 25]);
+    assert!(moved.iter().all(|&share| share < 0.01), "{moved:?}");
+}
+
+#[test]
+fn the_captured_vase_left_alone_stands() {
+    let shared = std::env::var_os("PHYSTALK_SHARED").map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"), Into::into);
+    let scenes = shared.join("scenes");
+    if !scenes.join("vase.splat").exists() {
+        println!("{} has no vase: only the synthetic twig is tested", scenes.display());
+        return;
+    }
+    let moved = seen_moving(&Spec::of_scene("vase.splat"), &scenes, &[50]);
+    assert!(moved.iter().all(|&share| share < 0.01), "{moved:?}");
+}
