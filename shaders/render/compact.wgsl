@@ -1,7 +1,7 @@
 // The visible Gaussians, in their own order, with their depth as key. The key's bits are spread over
 // the depths that occur, so that 24 of them are as good as 32.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var<storage, read> covers: array<Cover>;
 @group(0) @binding(2) var<storage, read> visible: array<u32>;
 @group(0) @binding(3) var<storage, read> place: array<u32>;

@@ -1,7 +1,7 @@
 // One pair of bin and Gaussian for each bin touched, nearest Gaussian first: a stable sort by bin keeps
 // the order of depth within each bin. Pairs past the capacity are dropped; the frame is then redrawn.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var<storage, read> extent: array<u32>;
 @group(0) @binding(2) var<storage, read> order: array<u32>;
 @group(0) @binding(3) var<storage, read> covers: array<Cover>;

@@ -2,7 +2,7 @@
 // shadow at that place on a floor a shade darker than the background, which it fades into; above the
 // horizon, 1.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var<storage, read> ground_map: array<f32>;
 @group(0) @binding(2) var<storage, read_write> backdrop: array<f32>;
 

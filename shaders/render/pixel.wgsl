@@ -1,7 +1,7 @@
 // What a finished pixel becomes: rgba8 over the background, and the planes that were asked for.
 // `pixels` holds the packed colours first, then each optional plane.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var<storage, read> starts: array<u32>;
 @group(0) @binding(2) var<storage, read> order: array<u32>;
 @group(0) @binding(3) var<storage, read> splats: array<Splat>;

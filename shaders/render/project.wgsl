@@ -1,7 +1,7 @@
 // World to screen: cull, project (EWA, Zwicker et al. 2001), colour, and the bins each Gaussian touches.
 // Comparisons are phrased so that NaN fails them: what is not a proper Gaussian falls out here.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var<storage, read> geometry: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> sh: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> splats: array<Splat>;

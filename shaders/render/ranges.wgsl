@@ -1,7 +1,7 @@
 // Where each bin's pairs start in the sorted list: each thread fills the bins between its key and the
 // one before, the thread past the end the rest. starts[bins] is where the last bin ends.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var<storage, read> extent: array<u32>;
 @group(0) @binding(2) var<storage, read> keys: array<u32>;
 @group(0) @binding(3) var<storage, read_write> starts: array<u32>;

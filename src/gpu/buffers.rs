@@ -31,15 +31,6 @@ impl Gpu {
         Ok(buffer)
     }
 
-    /// A uniform buffer that holds one value.
-    pub fn uniform<T: Pod>(&self, label: &str, value: &T) -> wgpu::Buffer {
-        let size = (size_of::<T>() as u64).max(16).next_multiple_of(16);
-        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false });
-        self.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(value));
-        buffer
-    }
-
     /// Overwrites the start of a buffer, in order with what was submitted before.
     pub fn upload<T: Pod>(&self, buffer: &wgpu::Buffer, values: &[T]) {
         if !values.is_empty() {

@@ -10,8 +10,6 @@ pub enum Access {
     Read,
     /// `var<storage, read_write>`
     Write,
-    /// `var<uniform>`
-    Uniform,
 }
 
 /// A constant that reaches WGSL from Rust, where it is documented.
@@ -114,7 +112,6 @@ fn layout_entry(binding: u32, access: Access) -> wgpu::BindGroupLayoutEntry {
     let ty = match access {
         Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
         Access::Write => wgpu::BufferBindingType::Storage { read_only: false },
-        Access::Uniform => wgpu::BufferBindingType::Uniform,
     };
     wgpu::BindGroupLayoutEntry {
         binding,

@@ -66,7 +66,7 @@ impl FrameBuffers {
         let words = |label, count: usize| gpu.storage::<u32>(label, count);
         Ok(FrameBuffers {
             capacity,
-            uniform: gpu.uniform("render.frame", &<Uniform as bytemuck::Zeroable>::zeroed()),
+            uniform: gpu.storage::<Uniform>("render.frame", 1)?,
             splats: gpu.storage_bytes("render.splats", SPLAT_BYTES * n as u64)?,
             covers: gpu.storage_bytes("render.covers", COVER_BYTES * n as u64)?,
             visible: words("render.visible", n)?,

@@ -68,13 +68,13 @@ impl RasterForm {
             ("WIDE", Constant::Bool(self.wide)),
             ("INFINITY_BITS", Constant::U32(f32::INFINITY.to_bits())),
         ]);
-        let (u, r, w) = (Access::Uniform, Access::Read, Access::Write);
+        let (r, w) = (Access::Read, Access::Write);
         KernelSource {
             label: "render.raster",
             entry: "main",
             parts: vec![FRAME, SPLAT, PIXEL, kernel],
             constants,
-            bindings: vec![u, r, r, r, r, r, w],
+            bindings: vec![r, r, r, r, r, r, w],
             immediate_bytes: 0,
         }
     }
@@ -101,20 +101,20 @@ fn source(label: &'static str, parts: &[(&'static str, &'static str)], bindings:
 
 /// Project, compact, gather, emit, ranges.
 fn sources() -> [KernelSource; 5] {
-    let (u, r, w) = (Access::Uniform, Access::Read, Access::Write);
+    let (r, w) = (Access::Read, Access::Write);
     [
-        source("render.project", &[FRAME, SPLAT, REACH, SH, PROJECT], &[u, r, r, w, w, w, w]),
-        source("render.compact", &[FRAME, COMPACT], &[u, r, r, r, r, w, w]),
+        source("render.project", &[FRAME, SPLAT, REACH, SH, PROJECT], &[r, r, r, w, w, w, w]),
+        source("render.compact", &[FRAME, COMPACT], &[r, r, r, r, r, w, w]),
         source("render.gather", &[FRAME, GATHER], &[r, r, r, w]),
-        source("render.emit", &[FRAME, SPLAT, REACH, EMIT], &[u, r, r, r, r, r, w, w]),
-        source("render.ranges", &[FRAME, RANGES], &[u, r, r, w]),
+        source("render.emit", &[FRAME, SPLAT, REACH, EMIT], &[r, r, r, r, r, r, w, w]),
+        source("render.ranges", &[FRAME, RANGES], &[r, r, r, w]),
     ]
 }
 
 /// The plain ground's factor behind each pixel.
 fn ground_source() -> KernelSource {
     let [spline, shade] = shadow::GROUND_PARTS;
-    let mut ground = source("render.ground", &[FRAME, spline, shade, GROUND], &[Access::Uniform, Access::Read, Access::Write]);
+    let mut ground = source("render.ground", &[FRAME, spline, shade, GROUND], &[Access::Read, Access::Read, Access::Write]);
     ground.constants.push(("SIDE", Constant::U32(shadow::SIDE)));
     ground
 }

@@ -1,4 +1,5 @@
-//! What every pass of a frame knows. Mirrors `shaders/render/frame.wgsl`.
+//! What every pass of a frame knows. Mirrors `shaders/render/frame.wgsl`. It lies in a storage buffer:
+//! lavapipe compiles a pass anew, and keeps it, wherever a uniform alone decides a branch or a loop.
 
 use super::profile::{Constants, INRIA_TILE, NEAR};
 use super::{RenderOptions, View};

@@ -2,6 +2,7 @@
 //! pictures of other programs where they are there, and against itself.
 
 mod behaviour;
+mod ground;
 mod other_programs;
 mod reference;
 mod scenes;
