@@ -3,14 +3,13 @@
 use super::engine::Engine;
 use super::{Quality, RunOptions};
 use crate::Stop;
-use crate::gpu::{DeviceRequest, Gpu};
+use crate::gpu::{DeviceRequest, Gpu, Recording};
 use crate::scene::{self, Gaussians};
-use crate::skin::{Bound, twin};
-use crate::spec::{Auto, Axis, Material, Spec, Weights};
+use crate::skin::{Skinner, Splats};
+use crate::spec::{Auto, Axis, Material, Spec};
 use crate::store::Store;
+use crate::world::World;
 use crate::world::bodies::matter;
-use crate::world::measure::MOTION_WORDS;
-use crate::world::{Prepared, World};
 use glam::Vec3;
 use std::path::Path;
 
@@ -30,29 +29,24 @@ fn seen_moving(spec: &Spec, base: &Path, frames: &[u32]) -> Vec<f32> {
     world.prestress(spec, &stop, &mut |_| {}).unwrap();
     world.place(spec, &matter).unwrap();
     let rest = &matter.particles.position_m;
-    let height = prepared.object_facts(spec)[0].height_m() as f32;
+    let splats = Splats::new(&gpu, &prepared.gaussians, prepared.world_from_sh, &prepared.object_of).unwrap();
+    let skinner = Skinner::new(&gpu, &splats, &bound, rest, spec.skin.weights).unwrap();
+    let height_m = prepared.object_facts(spec)[0].height_m() as f32;
     let mut moved = Vec::new();
     for frame in 1..=frames[frames.len() - 1] {
         world.step_frame(&stop).unwrap();
         if frames.contains(&frame) {
             world.show();
-            let motion: Vec<[u32; MOTION_WORDS]> = gpu.read(world.motion(), rest.len()).unwrap();
-            moved.push(farthest_m(prepared, &bound, &motion, rest) / height);
+            let mut recording = Recording::default();
+            skinner.record(world.motion(), &mut recording);
+            gpu.submit(&recording);
+            let records: Vec<[f32; 16]> = gpu.read(&splats.geometry, prepared.gaussians.len()).unwrap();
+            let farthest_m = records.iter().zip(&prepared.gaussians.mean).map(|(r, p)| Vec3::from_slice(r).distance(*p)).fold(0.0, f32::max);
+            moved.push(farthest_m / height_m);
         }
     }
     println!("{} particles, seen to move by {moved:?} of their height", rest.len());
     moved
-}
-
-/// How far the Gaussian that moved most is from where it was captured.
-fn farthest_m(prepared: &Prepared, bound: &Bound, motion: &[[u32; MOTION_WORDS]], rest: &[Vec3]) -> f32 {
-    let deltas: Vec<_> = motion.iter().zip(rest).map(|(m, &p)| twin::delta(*m, p, Vec3::ZERO, Weights::Exact)).collect();
-    let moved_m = |(g, mean): (usize, &Vec3)| {
-        let mut record = [0.0; 16];
-        record[..3].copy_from_slice(&mean.to_array());
-        Vec3::from_slice(&twin::blend(&record, g, bound, &deltas, Vec3::ZERO, Weights::Exact)).distance(*mean)
-    };
-    prepared.gaussians.mean.iter().enumerate().map(moved_m).fold(0.0, f32::max)
 }
 
 /// A block of Gaussians, and a twig of single ones that stands out of its side.
