@@ -10,6 +10,7 @@ mod diff;
 mod edit;
 mod error;
 pub mod expect;
+pub mod expression;
 mod gloss;
 mod later;
 pub mod limits;
