@@ -1,4 +1,4 @@
-// Grid: momentum to velocity, gravity, contact, pins. One workgroup for each active block. Leaves the
+// Grid: momentum to velocity, gravity, contact, pins, still or moving. One workgroup for each active block. Leaves the
 // sums and marks that it read zeroed for the next substep.
 
 struct Pin {
@@ -8,6 +8,9 @@ struct Pin {
     // Box that it is limited to.
     low: vec4<f32>,
     high: vec4<f32>,
+    // How far it has been taken at the start of the segment, and its velocity.
+    shift: vec4<f32>,
+    velocity: vec4<f32>,
 }
 
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -20,17 +23,19 @@ struct Pin {
 @group(0) @binding(7) var<storage, read_write> control: Control;
 var<immediate> substep: Substep;
 
-fn pinned(x: vec3<f32>) -> bool {
+// The velocity that a pin gives a node, and 1; zeros where none holds it.
+fn pinned(x: vec3<f32>) -> vec4<f32> {
     for (var p = 0u; p < params.pin_count; p++) {
         let pin = pins[p];
-        if (any(x < pin.low.xyz) || any(x > pin.high.xyz)) {
+        let place = x - (pin.shift.xyz + substep.since_s * pin.velocity.xyz);
+        if (any(place < pin.low.xyz) || any(place > pin.high.xyz)) {
             continue;
         }
-        if (touch(Collider(pin.at, pin.shape, vec4<f32>(0.0)), x).distance_m <= 0.0) {
-            return true;
+        if (touch(Collider(pin.at, pin.shape, vec4<f32>(0.0)), place).distance_m <= 0.0) {
+            return vec4<f32>(pin.velocity.xyz, 1.0);
         }
     }
-    return false;
+    return vec4<f32>(0.0);
 }
 
 // A node may approach as far as the nearest of its particles has room; then the normal part goes, or
@@ -93,8 +98,9 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     if (mark.x != 0u) {
         v = respond(v, mark.x, x);
     }
-    if (params.pin_count > 0u && pinned(x)) {
-        v = vec3<f32>(0.0);
+    if (params.pin_count > 0u) {
+        let held = pinned(x);
+        v = select(v, held.xyz, held.w > 0.0);
     }
     velocity[node] = vec4<f32>(v, 0.0);
 }

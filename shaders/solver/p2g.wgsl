@@ -16,13 +16,6 @@
 @group(0) @binding(6) var<storage, read_write> control: Control;
 var<immediate> substep: Substep;
 
-// PCG hash (Jarzynski and Olano 2020).
-fn hash(value: u32) -> u32 {
-    let state = value * 747796405u + 2891336453u;
-    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-    return (word >> 22u) ^ word;
-}
-
 // Lane in which the run of equal keys that this lane belongs to begins.
 fn run_start(starts: vec4<u32>, lane: u32) -> u32 {
     var word = lane >> 5u;

@@ -5,6 +5,9 @@ struct Pin {
     shape: vec4<f32>,
     low: vec4<f32>,
     high: vec4<f32>,
+    // Pins that move begin where they were captured.
+    shift: vec4<f32>,
+    velocity: vec4<f32>,
 }
 
 @group(0) @binding(0) var<storage, read> params: Params;

@@ -7,4 +7,6 @@ struct Substep {
     index: u32,
     // Which job a pass that has several does; 0 in a run.
     job: u32,
+    // Seconds from the start of the segment to the start of this substep.
+    since_s: f32,
 }

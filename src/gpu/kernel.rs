@@ -79,9 +79,15 @@ impl Gpu {
     /// Compiles a pass. Shader text is ours alone and is validated by the tests, so this cannot fail
     /// for any input of a user.
     pub fn kernel(&self, source: &KernelSource) -> Kernel {
+        self.kernel_with(source, "")
+    }
+
+    /// As [`Gpu::kernel`], with further functions that were written by the program.
+    pub fn kernel_with(&self, source: &KernelSource, functions: &str) -> Kernel {
+        let text = source.wgsl() + functions;
         let module = self
             .device
-            .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(source.label), source: wgpu::ShaderSource::Wgsl(source.wgsl().into()) });
+            .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(source.label), source: wgpu::ShaderSource::Wgsl(text.into()) });
         let entries: Vec<_> = source.bindings.iter().enumerate().map(|(i, access)| layout_entry(i as u32, *access)).collect();
         let layout = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(source.label), entries: &entries });
         let pipeline_layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

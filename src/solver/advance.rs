@@ -2,6 +2,7 @@
 
 use super::constants::{FIXED_BITS_RETREAT, SLACK_CELLS};
 use super::core::Solver;
+use super::fields::{Fields, When};
 use super::grid::GridBuffers;
 use super::obstacles;
 use super::types::{Advance, Softened, SolverError};
@@ -19,6 +20,7 @@ pub(super) struct Substep {
     pub dt_next_s: f32,
     pub index: u32,
     pub job: u32,
+    pub since_s: f32,
 }
 
 /// How a segment is cut into substeps.
@@ -66,6 +68,11 @@ const CPU_BATCH: u32 = 400_000;
 /// Substeps of one submit on a GPU.
 const GPU_BATCH: u32 = 64;
 
+/// Whether something from one time to another is in force at a third.
+pub(super) fn spans(from_s: f64, to_s: f64, time_s: f64) -> bool {
+    from_s <= time_s + SAME_TIME_S && time_s + SAME_TIME_S < to_s
+}
+
 enum Outcome {
     Done(Watch),
     Stopped,
@@ -101,8 +108,12 @@ impl Solver {
         let (mut halvings, mut softenings, mut room) = (0, 0, 1);
         loop {
             let acceleration_m_s2 = self.set_surroundings();
+            let pins_m_s = self.pin_speed_m_s();
+            (seen.driven_m_s, seen.drift_m_s) = (seen.driven_m_s.max(pins_m_s), seen.drift_m_s.max(pins_m_s));
+            self.ask_fields_at(until_s);
             let plan = self.plan(&seen, until_s, frame_end_s, acceleration_m_s2, halvings);
-            let reach_m = (seen.speed_m_s + acceleration_m_s2 * (until_s - self.time_s) as f32) * (until_s - self.time_s) as f32;
+            let span_s = (until_s - self.time_s) as f32;
+            let reach_m = (seen.speed_m_s + seen.drift_m_s + acceleration_m_s2 * span_s) * span_s;
             let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + SLACK_CELLS + 3) * room;
             self.fit_window(seen.low, seen.high, margin)?;
             let (start, order) = (self.substep, self.current);
@@ -116,6 +127,7 @@ impl Solver {
             let Some(reason) = now.trip(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m) else {
                 self.time_s = until_s;
                 self.seen = Some(now);
+                self.report_fields(report);
                 report.substeps += u64::from(plan.substeps);
                 report.dt_min_s = report.dt_min_s.min(f64::from(plan.dt_s.min(plan.last_dt_s)));
                 report.dt_max_s = report.dt_max_s.max(f64::from(plan.dt_s.max(plan.last_dt_s)));
@@ -130,6 +142,10 @@ impl Solver {
             if now.overflow {
                 self.params.momentum_bits -= FIXED_BITS_RETREAT;
                 self.params.mass_units *= 0.5f32.powi(FIXED_BITS_RETREAT as i32);
+            }
+            // A field that drove faster than it was thought to; at most to the speed that fields end at.
+            if self.fields.is_some() && now.peak_speed_m_s.is_finite() {
+                seen.driven_m_s = seen.driven_m_s.max(now.peak_speed_m_s);
             }
             if halvings < HALVINGS {
                 halvings += 1;
@@ -147,12 +163,19 @@ impl Solver {
     /// The next time, up to `until_s`, at which a force or a pin begins or ends.
     fn next_cut(&self, until_s: f64) -> f64 {
         let forces = self.settings.forces.iter().flat_map(|f| [f.from_s, f.to_s]);
-        let pins = self.settings.pins.iter().flat_map(|p| [p.from_s, p.to_s]);
-        forces.chain(pins).filter(|&t| t > self.time_s + SAME_TIME_S).fold(until_s, f64::min)
+        let fields = self.settings.fields.iter().flat_map(|f| [f.from_s, f.to_s]);
+        let pins = self.settings.pins.iter().flat_map(|p| p.times_s());
+        forces.chain(fields).chain(pins).filter(|&t| t > self.time_s + SAME_TIME_S).fold(until_s, f64::min)
     }
 
     pub(super) fn in_force(&self, from_s: f64, to_s: f64) -> bool {
-        from_s <= self.time_s + SAME_TIME_S && self.time_s + SAME_TIME_S < to_s
+        spans(from_s, to_s, self.time_s)
+    }
+
+    /// The fastest that a pin moves in this segment.
+    fn pin_speed_m_s(&self) -> f32 {
+        let pins = self.settings.pins.iter().filter(|p| self.in_force(p.from_s, p.to_s));
+        pins.map(|p| p.motion(self.time_s + SAME_TIME_S).1.length() as f32).fold(0.0, f32::max)
     }
 
     /// Uploads the forces and pins of the present time. The largest acceleration that anything feels
@@ -165,9 +188,10 @@ impl Solver {
             }
         }
         let pins: Vec<_> = self.settings.pins.iter().filter(|p| self.in_force(p.from_s, p.to_s)).collect();
-        let records: Vec<_> = pins.iter().map(|p| obstacles::pin(p, self.settings.cell_m)).collect();
+        let records: Vec<_> = pins.iter().map(|p| obstacles::pin(p, self.settings.cell_m, self.time_s)).collect();
         self.params.pin_count = records.len() as u32;
         self.gpu.upload(&self.pins_buffer, &records);
+        self.set_fields();
         self.gpu.upload(&self.objects_buffer, &accelerations.iter().map(|a| a.extend(0.0)).collect::<Vec<_>>());
         let driven = accelerations.iter().map(|a| a.length()).fold(0.0, f32::max);
         self.settings.gravity_m_s2.length() + driven
@@ -178,7 +202,7 @@ impl Solver {
     pub(super) fn plan(&self, seen: &Watch, until_s: f64, frame_end_s: f64, acceleration_m_s2: f32, halvings: u32) -> Plan {
         let cell_m = f64::from(self.settings.cell_m);
         let left_s = frame_end_s - self.time_s;
-        let speed_m_s = f64::from(seen.speed_m_s) + f64::from(acceleration_m_s2) * left_s;
+        let speed_m_s = f64::from(seen.speed_m_s + seen.driven_m_s) + f64::from(acceleration_m_s2) * left_s;
         let limit_s = f64::from(self.settings.cfl) * cell_m / (f64::from(seen.wave_speed_m_s) + speed_m_s) / f64::from(1u32 << halvings);
         let dt_s = left_s / (left_s / limit_s).ceil().max(1.0);
         let parts = (until_s - self.time_s) / dt_s;
@@ -202,6 +226,7 @@ impl Solver {
         }
         self.gpu.upload(&self.params_buffer, &[self.params]);
         self.gpu.upload(&self.control, &[Control::FRESH]);
+        self.ask_fields_at(self.time_s);
         let mut recording = Recording::default();
         self.record_measure(&mut recording);
         self.gpu.submit(&recording);
@@ -214,11 +239,18 @@ impl Solver {
         let state = &self.buffers[self.current];
         let bindings = self.gpu.bind(&self.passes.measure, &[&self.params_buffer, &state.kinematics, &state.matter, &self.control, &self.laws.table]);
         recording.dispatch(&self.passes.measure, &bindings, self.particle_groups());
+        self.record_field_question(recording);
     }
 
-    fn read_watch(&self) -> Result<Watch, SolverError> {
-        let parts = Readback::start(&self.gpu, &[(&self.control, size_of::<Control>() as u64)]).wait(&self.gpu)?;
-        Ok(bytemuck::pod_read_unaligned::<Control>(&parts[0]).watch())
+    fn read_watch(&mut self) -> Result<Watch, SolverError> {
+        let mut sources = vec![(&self.control, size_of::<Control>() as u64)];
+        sources.extend(self.fields.as_ref().map(Fields::tally));
+        let parts = Readback::start(&self.gpu, &sources).wait(&self.gpu)?;
+        let mut watch = bytemuck::pod_read_unaligned::<Control>(&parts[0]).watch();
+        if let (Some(fields), Some(tally)) = (&mut self.fields, parts.get(1)) {
+            (watch.driven_m_s, watch.drift_m_s) = fields.read(tally);
+        }
+        Ok(watch)
     }
 
     /// Runs the substeps of a plan from the present state. The queue is kept full: a batch is recorded
@@ -265,7 +297,8 @@ impl Solver {
     pub(super) fn record_substep(&mut self, plan: &Plan, step: u32, bound: &[Bound; 2], recording: &mut Recording) {
         let groups = self.particle_groups();
         let sorts = step.is_multiple_of(plan.sort_every);
-        let substep = Substep { dt_s: plan.dt_of(step), dt_next_s: plan.dt_of(step + 1), index: self.substep, job: 0 };
+        let substep =
+            Substep { dt_s: plan.dt_of(step), dt_next_s: plan.dt_of(step + 1), index: self.substep, job: 0, since_s: plan.time_s(step) as f32 };
         if sorts {
             self.record_sort(&bound[self.current], recording);
             self.current = 1 - self.current;
@@ -279,6 +312,7 @@ impl Solver {
         recording.dispatch_with(&passes.p2g, &b.p2g, &substep, groups);
         recording.indirect_with(&passes.grid, &b.grid, &substep, &b.active_groups, 0);
         recording.dispatch_with(&passes.g2p, &b.g2p, &substep, groups);
+        self.record_fields(b, &substep, recording);
         self.substep += 1;
     }
 
@@ -314,6 +348,7 @@ impl Solver {
         let g2p = [params, kinematics, matter, &grid.velocity, around.0, around.1, control, &laws.table, &laws.activations, laws.shown()];
         Bound {
             active_groups: grid.active_groups.clone(),
+            fields: self.fields.as_ref().map(|f| f.bind(self, state, When::Now)),
             bin: gpu.bind(&p.bin, &[params, kinematics, &grid.cell_count, &grid.block_info, &self.control]),
             scan_sums: gpu.bind(&p.scan_sums, &[params, &grid.block_info, &grid.chunk_sums]),
             scan_blocks: gpu
@@ -378,6 +413,8 @@ impl Solver {
 /// The bind groups of the passes over one of the two state buffers.
 pub(super) struct Bound {
     active_groups: wgpu::Buffer,
+    /// Where a scene has fields.
+    pub fields: Option<wgpu::BindGroup>,
     bin: wgpu::BindGroup,
     scan_sums: wgpu::BindGroup,
     scan_blocks: wgpu::BindGroup,

@@ -71,6 +71,10 @@ pub const LOOSE_MOST: f32 = 0.4;
 pub const PACKING_LEAST: f32 = 0.6;
 /// Nor higher.
 pub const PACKING_MOST: f32 = 20.0;
+/// Fields bring nothing beyond this speed, m/s: the fastest that a spec may ask for.
+pub const FIELD_SPEED: f32 = crate::spec::limits::SPEED_M_S as f32;
+/// The largest change of a field over one substep, in shares of what it depends on, that is resolved.
+pub const FIELD_STIFFEST: f32 = 1e4;
 
 /// All of them as WGSL constants.
 pub fn all() -> Vec<(&'static str, Constant)> {
@@ -107,5 +111,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("LOOSE_MOST", Constant::F32(LOOSE_MOST)),
         ("PACKING_LEAST", Constant::F32(PACKING_LEAST)),
         ("PACKING_MOST", Constant::F32(PACKING_MOST)),
+        ("FIELD_SPEED", Constant::F32(FIELD_SPEED)),
+        ("FIELD_STIFFEST", Constant::F32(FIELD_STIFFEST)),
     ]
 }

@@ -1,6 +1,7 @@
 //! The solver itself: its particles, its surroundings, and what may be done to them between frames.
 
 use super::constants::{FIXED_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
+use super::fields::Fields;
 use super::grid::{GridBuffers, Window, allowed_blocks};
 use super::kept::Kept;
 use super::laws::{Laws, rows};
@@ -65,6 +66,8 @@ pub struct Solver {
     pub(super) buffers: [StateBuffers; 2],
     pub(super) current: usize,
     pub(super) backup: StateBuffers,
+    /// What drives particles by expressions, where anything does.
+    pub(super) fields: Option<Fields>,
     /// Of facilities beside the laws; [`Solver::kept`] has all.
     pub(super) kept: Vec<Kept>,
     pub(super) slots: wgpu::Buffer,
@@ -117,6 +120,7 @@ impl Solver {
             buffers: [StateBuffers::new(gpu, "solver.even", n)?, StateBuffers::new(gpu, "solver.odd", n)?],
             current: 0,
             backup: StateBuffers::new(gpu, "solver.backup", n)?,
+            fields: Fields::new(gpu, &settings, particles, params.seed)?,
             kept: Vec::new(),
             slots: gpu.storage::<[u32; 4]>("solver.slots", n)?,
             unstressed: gpu.storage_from("solver.unstressed", &vec![rows(Mat3::IDENTITY); n])?,

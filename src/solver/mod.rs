@@ -14,6 +14,7 @@ mod bench;
 mod checkpoint;
 mod constants;
 mod core;
+mod fields;
 mod grid;
 mod kept;
 mod laws;
@@ -34,13 +35,15 @@ mod twin;
 
 pub use bench::{BenchReport, bench_substep};
 pub use core::Solver;
+pub use fields::velocity_change;
 pub use substance::{Activation, Substance};
-pub use types::{Advance, Collider, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError};
+pub use types::{Advance, Collider, Field, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError};
 
 /// Every pass of the solver, for validation and keys.
 pub fn kernels() -> Vec<KernelSource> {
     let mut all = passes::kernels();
     all.extend(laws::kernels());
+    all.extend(fields::kernels());
     all
 }
 

@@ -22,6 +22,9 @@ pub(super) struct PinRecord {
     pub shape: [f32; 4],
     pub low: [f32; 4],
     pub high: [f32; 4],
+    /// How far it has been taken at the start of the segment, and its velocity.
+    pub shift: [f32; 4],
+    pub velocity: [f32; 4],
 }
 
 /// Where a point is against a surface.
@@ -48,10 +51,19 @@ pub(super) fn colliders(settings: &Settings) -> Vec<ColliderRecord> {
 /// A pin holds the nodes up to half a cell around its shape, so that it holds what is in it, and at
 /// least one layer; around the object's box there is room for the nodes that its outermost particles
 /// reach.
-pub(super) fn pin(region: &PinRegion, cell_m: f32) -> PinRecord {
+pub(super) fn pin(region: &PinRegion, cell_m: f32, time_s: f64) -> PinRecord {
     let (at, shape) = geometry(&region.shape, 0.5 * cell_m);
     let room = Vec3::splat(2.0 * cell_m);
-    PinRecord { at, shape, low: (region.low_m - room).extend(0.0).into(), high: (region.high_m + room).extend(0.0).into() }
+    // A hair later, so that a path's corner counts as passed.
+    let (shift, velocity) = region.motion(time_s + 1e-9);
+    PinRecord {
+        at,
+        shape,
+        low: (region.low_m - room).extend(0.0).into(),
+        high: (region.high_m + room).extend(0.0).into(),
+        shift: shift.as_vec3().extend(0.0).into(),
+        velocity: velocity.as_vec3().extend(0.0).into(),
+    }
 }
 
 fn geometry(shape: &ColliderShape, grow_m: f32) -> ([f32; 4], [f32; 4]) {

@@ -1,7 +1,7 @@
 //! The solver's kernels, and their compiled set.
 
 /// Bytes of the immediates of a pass of the substep.
-pub(super) const SUBSTEP: u32 = 16;
+pub(super) const SUBSTEP: u32 = 20;
 /// Bytes of the immediates of a kick.
 const KICK: u32 = 32;
 
@@ -62,7 +62,7 @@ passes! {
     scatter: ["cell", "scatter"] [Read, Read, Read, Write, Read, Write] 0;
     order: ["order"] [Read, Read, Read, Read, Write, Write] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
-    p2g: ["control", "substep", "particle", "contact", "p2g"] [Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
+    p2g: ["control", "substep", "hash", "particle", "contact", "p2g"] [Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
     grid: ["control", "substep", "contact", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write] SUBSTEP;
     g2p: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;

@@ -3,7 +3,8 @@
 use super::substance::Substance;
 use crate::gpu::GpuError;
 use crate::spec::ColliderShape;
-use glam::{Quat, Vec3};
+use crate::spec::expression::Program;
+use glam::{DVec3, Quat, Vec3};
 
 /// The particles of all objects, as sampled: the captured pose, free of stress. World frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,8 +69,8 @@ pub struct Collider {
     pub restitution: f32,
 }
 
-/// Holds still whatever lies in a shape, within the box of the object that it belongs to.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Holds whatever lies in a shape, within the box of the object that it belongs to: still, or along a path.
+#[derive(Clone, Debug, PartialEq)]
 pub struct PinRegion {
     /// Inside a box or sphere, behind a plane.
     pub shape: ColliderShape,
@@ -81,6 +82,30 @@ pub struct PinRegion {
     pub from_s: f64,
     /// Until when; infinite for a pin that lasts.
     pub to_s: f64,
+    /// Where it has been taken, straight from point to point: seconds, then metres from where it began.
+    /// Times rise from `from_s` on; after the last it stands still.
+    pub path: Vec<[f64; 4]>,
+}
+
+impl PinRegion {
+    /// Every time at which it begins, ends, or changes its velocity.
+    pub(super) fn times_s(&self) -> impl Iterator<Item = f64> {
+        [self.from_s, self.to_s].into_iter().chain(self.path.iter().map(|p| p[0]))
+    }
+
+    /// How far it has been taken at a time, and its velocity from then on.
+    pub(super) fn motion(&self, time_s: f64) -> (DVec3, DVec3) {
+        let at = |p: &[f64; 4]| (p[0], DVec3::new(p[1], p[2], p[3]));
+        let mut from = (self.from_s, DVec3::ZERO);
+        for to in self.path.iter().map(at) {
+            if time_s < to.0 {
+                let velocity = (to.1 - from.1) / (to.0 - from.0);
+                return (from.1 + velocity * (time_s - from.0).max(0.0), velocity);
+            }
+            from = to;
+        }
+        (from.1, DVec3::ZERO)
+    }
 }
 
 /// A constant acceleration of one object over a span of time.
@@ -94,6 +119,21 @@ pub struct ObjectForce {
     pub to_s: f64,
     /// World frame.
     pub acceleration_m_s2: Vec3,
+}
+
+/// An acceleration of one object by an expression, over a span of time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// As reports call it.
+    pub name: String,
+    /// Index of the object.
+    pub object: u32,
+    /// From when, seconds.
+    pub from_s: f64,
+    /// Until when; infinite for one that lasts.
+    pub to_s: f64,
+    /// m/s^2 in the world frame: three results.
+    pub acceleration: Program,
 }
 
 /// What surrounds the particles, and how finely they are solved.
@@ -111,6 +151,8 @@ pub struct Settings {
     pub pins: Vec<PinRegion>,
     /// What is driven.
     pub forces: Vec<ObjectForce>,
+    /// What is driven by expressions.
+    pub fields: Vec<Field>,
     /// Length of a frame. Substeps are equal parts of it, so that an event inside a frame changes
     /// nothing before itself.
     pub frame_s: f64,
@@ -130,6 +172,7 @@ impl Settings {
             colliders: Vec::new(),
             pins: Vec::new(),
             forces: Vec::new(),
+            fields: Vec::new(),
             frame_s: 0.02,
             seed: 1,
             cfl: 0.4,
@@ -178,6 +221,10 @@ pub struct Advance {
     pub retries: u32,
     /// Objects that were softened.
     pub softened: Vec<Softened>,
+    /// Fields that gave no number, and how often, counted by particle and substep. It counted as zero.
+    pub undefined: Vec<(String, u64)>,
+    /// How often a field would have brought a particle beyond 200 m/s, where it was held.
+    pub limited: u64,
 }
 
 /// How far the search for the captured pose's prestress came.

@@ -43,6 +43,8 @@ impl Control {
             speed_m_s: f32::from_bits(self.final_speed),
             wave_speed_m_s: f32::from_bits(self.wave_speed),
             peak_speed_m_s: f32::from_bits(self.speed),
+            driven_m_s: 0.0,
+            drift_m_s: 0.0,
             overflow: self.overflow != 0,
             window: self.window != 0,
             nonfinite: self.nonfinite,
@@ -69,6 +71,10 @@ pub(super) struct Watch {
     pub wave_speed_m_s: f32,
     /// Fastest particle at any substep of the segment.
     pub peak_speed_m_s: f32,
+    /// By how much fields and moving pins may speed anything up in the next frame.
+    pub driven_m_s: f32,
+    /// By how much fields change anything's velocity over the whole of the next frame: a stiff spring goes to and fro.
+    pub drift_m_s: f32,
     pub overflow: bool,
     pub window: bool,
     pub nonfinite: u32,

@@ -177,6 +177,9 @@ pub fn unit(path: &str) -> Option<&'static str> {
     let key = path.rsplit('.').find(|key| !matches!(*key, "x" | "y" | "z" | "min" | "max" | "first" | "last"))?;
     let units = [
         ("_kg_m3", "kg/m³"),
+        ("_per_s2", "/s²"),
+        ("_per_s", "/s"),
+        ("_per_m", "/m"),
         ("_m_s2", "m/s²"),
         ("_m_s", "m/s"),
         ("_rad_s", "rad/s"),

@@ -25,6 +25,16 @@ const SCALES: &[Scale] = &[
     Scale { key: "fov_deg", as_much: "wide a view", more: "wider view", less: "narrower view" },
     Scale { key: "push_m_s", as_much: "hard", more: "harder", less: "less hard" },
     Scale { key: "acceleration_m_s2", as_much: "strong", more: "stronger", less: "weaker" },
+    Scale { key: "drag_per_s", as_much: "much hold", more: "more hold", less: "less hold" },
+    Scale { key: "linear_per_s", as_much: "thick", more: "thicker", less: "thinner" },
+    Scale { key: "quadratic_per_m", as_much: "thick", more: "thicker", less: "thinner" },
+    Scale { key: "strength_m_s2", as_much: "strong", more: "stronger", less: "weaker" },
+    Scale { key: "speed_m_s", as_much: "fast", more: "faster", less: "slower" },
+    Scale { key: "speed_rad_s", as_much: "fast", more: "faster", less: "slower" },
+    Scale { key: "stiffness_per_s2", as_much: "stiff", more: "stiffer", less: "softer" },
+    Scale { key: "damping_per_s", as_much: "damped", more: "more damped", less: "less damped" },
+    Scale { key: "gust", as_much: "gusty", more: "gustier", less: "steadier" },
+    Scale { key: "turbulence", as_much: "rough", more: "rougher", less: "calmer" },
     Scale { key: "velocity_m_s", as_much: "fast", more: "faster", less: "slower" },
     Scale { key: "spin_rad_s", as_much: "fast a spin", more: "faster spin", less: "slower spin" },
     Scale { key: "neighbours", as_much: "many neighbours", more: "more neighbours", less: "fewer neighbours" },
@@ -108,9 +118,40 @@ fn added(change: &Change, entry: &Value, to: &Spec) -> Option<String> {
         return Some(format!("sent {} at {} s", going(velocity, forward)?, short(entry.get("at_s")?.as_f64()?)));
     }
     if let Some(acceleration) = vector("acceleration_m_s2") {
-        return Some(format!("drawn {}", towards(acceleration, forward)?));
+        return Some(match acceleration.as_str() {
+            Some(_) => "driven by an expression".to_owned(),
+            None => format!("drawn {}", towards(acceleration, forward)?),
+        });
     }
-    None
+    field(entry, forward)
+}
+
+/// A force that is a field.
+fn field(entry: &Value, forward: Axis) -> Option<String> {
+    let number = |field: &Value, key: &str| field.get(key).and_then(Value::as_f64);
+    if let Some(wind) = entry.get("wind") {
+        return Some(format!("blown {}", going(wind.get("velocity_m_s")?, forward)?));
+    }
+    if let Some(drag) = entry.get("drag") {
+        let thick = number(drag, "linear_per_s").unwrap_or(0.0) + number(drag, "quadratic_per_m").unwrap_or(0.0);
+        return Some(format!("slowed by what it moves through, {}", short(thick)));
+    }
+    if let Some(vortex) = entry.get("vortex") {
+        return Some(format!("swirled round at {} m/s", short(number(vortex, "speed_m_s")?)));
+    }
+    if let Some(attractor) = entry.get("attractor") {
+        let strength = number(attractor, "strength_m_s2")?;
+        let way = if strength < 0.0 { "pushed away from" } else { "drawn to" };
+        return Some(format!("{way} a point with {} m/s²", short(strength.abs())));
+    }
+    if entry.get("explosion").is_some() {
+        return Some(format!("blown apart at {} s", short(number(entry, "from_s").unwrap_or(0.0))));
+    }
+    if let Some(spring) = entry.get("spring") {
+        let along = spring.get("path_m").is_some();
+        return Some(format!("drawn {} by a spring", if along { "along a path" } else { "to a place" }));
+    }
+    entry.get("motor").and_then(|motor| Some(format!("turned at {} rad/s", short(number(motor, "speed_rad_s")?))))
 }
 
 /// "moon gravity, a sixth".

@@ -28,7 +28,6 @@ pub(super) fn all() -> impl Iterator<Item = (&'static str, String)> {
 const KEYS: &[(&str, &str, &str)] = &[
     ("", "look", "looks that change over time"),
     ("object", "part", "parts of another material in one object"),
-    ("pin", "path", "pins that move along a path"),
     ("event", "when", "events that wait for a condition"),
     ("event", "shatter", "shattering"),
     ("event", "freeze", "freezing"),
@@ -65,7 +64,6 @@ pub(super) fn word(pattern: &str, word: &str) -> Option<&'static str> {
 /// What a form that is not known here will once mean.
 pub(super) fn value(pattern: &str, value: &Value) -> Option<&'static str> {
     match (pattern, value) {
-        ("force.acceleration_m_s2", Value::String(_)) => Some("forces given as expressions"),
         ("object.select", Value::Array(items)) if items.iter().all(Value::is_number) => Some("selecting by ids"),
         ("object.select", Value::Array(_)) => Some("combining selections"),
         ("object.select", Value::Object(table)) if table.len() > 1 => Some("combining selections"),

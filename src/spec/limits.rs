@@ -24,6 +24,14 @@ pub const FPS: u32 = 1000;
 pub const GRAVITY_M_S2: f64 = 1e3;
 /// Magnitude of a force's acceleration.
 pub const ACCELERATION_M_S2: f64 = 1e4;
+/// How fast a drag or a motor acts: beyond a microsecond it is at once.
+pub const RATE_PER_S: f64 = 1e6;
+/// Of a spring.
+pub const STIFFNESS_PER_S2: f64 = 1e9;
+/// Points of a path.
+pub const PATH: u32 = 32;
+/// Steps of all expressions of a spec together.
+pub const EXPRESSION_STEPS: usize = 8192;
 /// Magnitude of a velocity: beyond it a step of the solver crosses a cell.
 pub const SPEED_M_S: f64 = 200.0;
 /// Magnitude of a spin, about 160 turns a second.

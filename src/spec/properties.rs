@@ -62,6 +62,51 @@ fn until(from_s: f64) -> impl Strategy<Value = Until> {
     prop_oneof![Just(Until::End), (0.01..100.0_f64).prop_map(move |more| Until::Time(from_s + more))]
 }
 
+/// Points that rise in time from a time on, not faster than anything may be.
+fn path(from_s: f64) -> impl Strategy<Value = Vec<[f64; 4]>> {
+    prop::collection::vec((0.1..2.0_f64, vector(9.0)), 0..4).prop_map(move |points| {
+        let mut at = from_s;
+        let mut point = |(later, place): (f64, [f64; 3])| {
+            at += later;
+            [at, place[0], place[1], place[2]]
+        };
+        points.into_iter().map(&mut point).collect()
+    })
+}
+
+/// A force that acts in any of its ways, of no name and object yet.
+fn drive() -> impl Strategy<Value = Force> {
+    let none = || Force::new("", "", 0.0, Until::End);
+    let expression = prop::sample::select(vec!["vec3(6 * sin(3 * t), 0, 0)", "-2 * v - 900 * (x - x0)", "if(t > 1, x, v) * noise(x)"]);
+    let rate = || number(0.0, 1e6);
+    prop_oneof![
+        vector(1e4).prop_map(move |a| Force::constant("", "", 0.0, Until::End, a)),
+        expression.prop_map(move |text| Force { acceleration_m_s2: Some(Acceleration::Expression(text.to_owned())), ..none() }),
+        (vector(200.0), rate(), 0.0..=2.0_f64, 0.0..=2.0_f64, 1e-6..1e5_f64).prop_map(move |(velocity_m_s, drag_per_s, gust, turbulence, eddy_m)| {
+            Force { wind: Some(Wind { velocity_m_s, drag_per_s, gust, turbulence, eddy_m }), ..none() }
+        }),
+        (number(1e-9, 1e6), rate())
+            .prop_map(move |(linear_per_s, quadratic_per_m)| { Force { drag: Some(Drag { linear_per_s, quadratic_per_m }), ..none() } }),
+        (auto(vector(1e3)), 0.1..1.0_f64, number(-200.0, 200.0), 1e-6..1e5_f64, rate()).prop_map(
+            move |(centre_m, x, speed_m_s, radius_m, drag_per_s)| {
+                Force { vortex: Some(Vortex { centre_m, axis: [x, 0.0, 1.0], speed_m_s, radius_m, lift_m_s: x, drag_per_s }), ..none() }
+            }
+        ),
+        (auto(vector(1e3)), number(-1e4, 1e4), 1e-6..1e5_f64, -4.0..8.0_f64).prop_map(move |(centre_m, strength_m_s2, radius_m, falloff)| {
+            Force { attractor: Some(Attractor { centre_m, strength_m_s2, radius_m, falloff }), ..none() }
+        }),
+        (auto(vector(1e3)), number(-200.0, 200.0), 1e-6..1e5_f64)
+            .prop_map(move |(centre_m, speed_m_s, radius_m)| { Force { explosion: Some(Explosion { centre_m, speed_m_s, radius_m }), ..none() } }),
+        (prop::option::of(vector(1e3)), path(1.0), number(0.0, 1e9), rate()).prop_map(move |(to_m, path, stiffness_per_s2, damping_per_s)| {
+            let to_m = if path.is_empty() { Some(to_m.unwrap_or_default()) } else { None };
+            Force { spring: Some(Spring { to_m, path_m: path, stiffness_per_s2, damping_per_s }), ..none() }
+        }),
+        (auto(vector(1e3)), 0.1..1.0_f64, number(-1e3, 1e3), rate()).prop_map(move |(centre_m, y, speed_rad_s, rate_per_s)| {
+            Force { motor: Some(Motor { centre_m, axis: [0.0, y, 1.0], speed_rad_s, rate_per_s }), ..none() }
+        }),
+    ]
+}
+
 fn entries() -> impl Strategy<Value = (Vec<Pin>, Vec<Collider>, Vec<Force>, Vec<Event>)> {
     let region = prop_oneof![
         (0.0..=1.0_f64).prop_map(Region::Above),
@@ -73,7 +118,7 @@ fn entries() -> impl Strategy<Value = (Vec<Pin>, Vec<Collider>, Vec<Force>, Vec<
     let shape =
         prop_oneof![shape_box().prop_map(ColliderShape::Box), shape_sphere().prop_map(ColliderShape::Sphere), plane().prop_map(ColliderShape::Plane)];
     let pin = (region, 0.0..9.0_f64).prop_flat_map(|(region, from_s)| {
-        until(from_s).prop_map(move |to_s| Pin { name: String::new(), object: "vase".to_owned(), region, from_s, to_s })
+        (until(from_s), path(from_s)).prop_map(move |(to_s, path)| Pin { name: String::new(), object: "vase".to_owned(), region, from_s, to_s, path })
     });
     let collider = (shape, 0.0..10.0_f64, 0.0..=1.0_f64).prop_map(|(shape, friction, restitution)| Collider {
         name: String::new(),
@@ -81,9 +126,8 @@ fn entries() -> impl Strategy<Value = (Vec<Pin>, Vec<Collider>, Vec<Force>, Vec<
         friction,
         restitution,
     });
-    let force = (vector(1e4), 0.0..9.0_f64).prop_flat_map(|(acceleration_m_s2, from_s)| {
-        until(from_s).prop_map(move |to_s| Force { name: String::new(), object: "vase".to_owned(), from_s, to_s, acceleration_m_s2 })
-    });
+    let force = (drive(), 0.0..9.0_f64)
+        .prop_flat_map(|(drive, from_s)| until(from_s).prop_map(move |to_s| Force { object: "vase".to_owned(), from_s, to_s, ..drive.clone() }));
     let event = (0.0..600.0_f64, vector(200.0), any::<bool>()).prop_map(|(at_s, v, push)| Event {
         name: String::new(),
         at_s,

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::canonical::inline;
 use super::expect::{METRICS, Shape};
+use super::expression::{self, Name};
 use super::{check, diff, later, presets, schema};
 
 const HEAD: &str = "# The spec
@@ -32,6 +33,18 @@ push_m_s = [0, 2, 0]
 [[expect]]
 that = \"vase.apex_m > 0.3\"
 ```
+";
+
+const EXPRESSIONS: &str = "
+## Expressions
+
+`acceleration_m_s2 = \"vec3(6 * sin(3 * t), 0, 0)\"` is worked out for every particle in every substep. It gives a vector, made of the names
+and functions below with `+ - * /`, comparisons, `&& || !` and brackets; `.x`, `.y` and `.z` are the parts of a vector, and a number beside
+a vector stands for all three. There are no loops and no access to anything. A text has at most 4096 bytes and 512 parts, 48 levels deep.
+
+Where it gives no number (a division by zero, a root or a logarithm of a negative number, a broken power of one, anything past 3e38) the force
+counts as zero for that particle and substep; `solver.undefined` of the metrics counts how often, and a warning says so. However stiff it
+is (`-1e8 * (x - x0)`), it is followed without an overshoot that grows; no force brings a particle beyond 200 m/s (`solver.limited`).
 ";
 
 const EDITS: &str = "
@@ -74,6 +87,7 @@ pub fn markdown() -> String {
         }
     }
     page.shapes();
+    page.expressions();
     page.text.push_str(EDITS);
     page.conditions();
     page.presets();
@@ -178,6 +192,18 @@ impl Page {
                 text(shape, "description").unwrap_or_default()
             );
             self.table(shape);
+        }
+    }
+
+    fn expressions(&mut self) {
+        self.text.push_str(EXPRESSIONS);
+        self.line("\n| name | |\n|---|---|");
+        for name in Name::ALL {
+            self.line(&format!("| `{}` | {}; {} |", name.word(), name.about(), name.kind().word()));
+        }
+        self.line("\n| function | |\n|---|---|");
+        for (word, about) in expression::functions() {
+            self.line(&format!("| `{word}` | {} |", cell(about)));
         }
     }
 

@@ -4,7 +4,7 @@
 use serde_json::{Map, Value, json};
 
 use super::error::{SpecError, SpecErrorKind, show};
-use super::{canonical::number, later, path, presets};
+use super::{canonical::number, expression, later, path, presets, validate};
 
 /// Genesis's names of elastic parameters and ours.
 const RENAMED: [(&str, &str); 3] = [("E", "young_pa"), ("nu", "poisson"), ("rho", "density_kg_m3")];
@@ -27,6 +27,12 @@ pub(super) fn settle(root: &mut Value) -> Result<(), SpecError> {
         let place = path::join(&path::entry("object", index, object), "material");
         if let Some(material) = object.get_mut("material") {
             settle_material(material, &place)?;
+        }
+    }
+    for (index, force) in entries(root, "force") {
+        let place = path::join(&path::entry("force", index, force), "acceleration_m_s2");
+        if let Some(acceleration) = force.get_mut("acceleration_m_s2") {
+            settle_expression(acceleration, &place)?;
         }
     }
     name_events(root);
@@ -62,6 +68,15 @@ fn name_events(root: &mut Value) {
         table.shift_insert(0, "name".to_owned(), json!(name.clone()));
         taken.push(name);
     }
+}
+
+/// An expression takes its canonical form.
+fn settle_expression(value: &mut Value, place: &str) -> Result<(), SpecError> {
+    if let Some(text) = value.as_str() {
+        let tree = expression::parse(text, expression::Kind::Vector).map_err(|fault| validate::expression(place, &fault))?;
+        *value = json!(tree.to_string());
+    }
+    Ok(())
 }
 
 /// `gravity_m_s2 = "moon"`.

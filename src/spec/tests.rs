@@ -176,19 +176,53 @@ fn what_comes_later_is_refused_by_name() {
         refused("poisson = 0.3", "yield_stress_pa = 3"),
         refused("[[pin]]", "[[object.part]]\nname = \"flowers\"\n[[pin]]"),
         refused("[[pin]]", "[[look]]\nobject = \"vase\"\n[[pin]]"),
-        refused("acceleration_m_s2 = [6, 0, 0]", "acceleration_m_s2 = \"vec3(6.0 * sin(3.0 * t), 0, 0)\""),
         refused("at_s = 0.5", "when = \"impact\""),
         refused("push_m_s = [2, 0, 0]", "shatter = true"),
         refused("shape = { box = { centre_m = [0, 0, -0.5], size_m = [1, 1, 0.2] } }", "shape = \"scene\""),
         refused("shape = { box = {", "shape = { capsule = {"),
         refused("select = \"all\"", "select = { segment = \"pot\" }"),
         refused("select = \"all\"", "select = [1, 2, 3]"),
-        refused("region = { below = 0.05 }", "region = { below = 0.05 }\npath = [[0, 0, 0]]"),
     ];
     for fault in &faults {
         assert_eq!(fault.kind, SpecErrorKind::NotBuilt, "{fault}");
     }
     assert_text!("later", faults.map(|error| error.to_string()).join("\n"));
+}
+
+#[test]
+fn forces_act_in_one_way_that_is_checked() {
+    let force = |text: &str| with("acceleration_m_s2 = [6, 0, 0]", text).map(|spec| spec.forces[0].clone());
+    let written = force("acceleration_m_s2 = \" vec3( 6.0*sin((3.0*t)),0, 0 ) \"").unwrap();
+    assert_eq!(written.acceleration_m_s2, Some(Acceleration::Expression("vec3(6 * sin(3 * t), 0, 0)".to_owned())));
+    let wind = force("wind = { velocity_m_s = [5, 0, 0] }").unwrap().wind.unwrap();
+    assert_eq!((wind.drag_per_s, wind.gust, wind.eddy_m), (1.0, 0.0, 0.3));
+    assert_eq!(force("vortex = { speed_m_s = 3 }").unwrap().vortex.unwrap().centre_m, Auto::Auto);
+    let path = with("region = { below = 0.05 }", "region = { below = 0.05 }\npath = [[1, 0.5, 0, 0], [2, 0, 0, 0]]").unwrap();
+    assert_eq!(path.pins[0].path.len(), 2);
+    let refused = |text: &str| force(text).expect_err(text);
+    let pin = |path: &str| with("region = { below = 0.05 }", &format!("region = {{ below = 0.05 }}\npath = {path}")).expect_err(path);
+    let faults = [
+        refused(""),
+        refused("acceleration_m_s2 = \"vec3(6 * sni(t), 0, 0)\""),
+        refused("acceleration_m_s2 = \"6 * sin(t)\""),
+        refused("acceleration_m_s2 = [1e5, 0, 0]"),
+        refused("acceleration_m_s2 = 3"),
+        refused("acceleration_m_s2 = [0, 0, 1]\ndrag = { linear_per_s = 1 }"),
+        refused("drag = {}"),
+        refused("drag = { linear_per_s = -1 }"),
+        refused("wind = { speed = 3 }"),
+        refused("wind = 3"),
+        refused("vortex = { speed_m_s = 3, axis = [0, 0, 0] }"),
+        refused("spring = {}"),
+        refused("spring = { to_m = [0, 0, 1], path_m = [[0, 0, 0, 0]] }"),
+        refused("spring = { path_m = [[1, 0, 0, 0], [1, 0, 0, 1]] }"),
+        refused("spring = { path_m = [[0, 0, 0, 0], [0.001, 0, 0, 1]] }"),
+        refused("spring = { path_m = [[0, 0, 0]] }"),
+        refused("motor = { axis = [0, 0, 1] }"),
+        pin("[[0, 0.1, 0, 0]]"),
+        pin("[[-1, 0, 0, 0]]"),
+    ];
+    assert_text!("forces", faults.map(|error| error.to_string()).join("\n"));
 }
 
 #[test]

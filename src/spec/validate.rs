@@ -4,7 +4,8 @@
 use std::collections::BTreeSet;
 
 use super::error::{SpecError, SpecErrorKind};
-use super::{Auto, ColliderShape, PlaneShape, Region, Spec, Until, canonical::number, expect};
+use super::expression::{Fault, Kind, Program, parse};
+use super::{Auto, ColliderShape, Drive, Force, Motor, PlaneShape, Region, Spec, Until, Vortex, canonical::number, expect, limits};
 
 /// Checks a spec whose structure and ranges are already right.
 pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
@@ -23,6 +24,13 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
         let place = format!("pin.{}", pin.name);
         known_object(&place, &pin.object, &objects)?;
         span(&place, pin.from_s, pin.to_s)?;
+        let still = [pin.from_s, 0.0, 0.0, 0.0];
+        let begins = pin.path.first().is_none_or(|first| first[0] != pin.from_s);
+        points(&format!("{place}.path"), &if begins { [&[still], pin.path.as_slice()].concat() } else { pin.path.clone() })?;
+        if let Some(first) = pin.path.first().filter(|first| first[0] <= pin.from_s && first[1..] != [0.0; 3]) {
+            let message = format!("at {} s it is already {} m away", number(first[0]), number(first[1].hypot(first[2]).hypot(first[3])));
+            return Err(SpecError::new(SpecErrorKind::Conflict, format!("{place}.path"), message).allowed("[from_s, 0, 0, 0] first, or a later time"));
+        }
         if let Region::HalfSpace(plane) = &pin.region {
             direction(&format!("{place}.region.half_space"), plane)?;
         }
@@ -36,7 +44,9 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
         let place = format!("force.{}", force.name);
         known_object(&place, &force.object, &objects)?;
         span(&place, force.from_s, force.to_s)?;
+        drive(&place, force)?;
     }
+    steps(spec)?;
     for event in &spec.events {
         let place = format!("event.{}", event.name);
         known_object(&place, &event.object, &objects)?;
@@ -81,12 +91,90 @@ fn span(place: &str, from_s: f64, to_s: Until) -> Result<(), SpecError> {
     }
 }
 
+const WAYS: &str = "acceleration_m_s2, wind, drag, vortex, attractor, explosion, spring or motor, one of them";
+
+/// Exactly one way to act, and that one whole.
+fn drive(place: &str, force: &Force) -> Result<(), SpecError> {
+    let conflict = |place: String, message: &str, allowed: &str| Err(SpecError::new(SpecErrorKind::Conflict, place, message).allowed(allowed));
+    match force.drives().as_slice() {
+        [] => conflict(place.to_owned(), "nothing acts", WAYS),
+        [Drive::Expression(text)] => match parse(text, Kind::Vector) {
+            Ok(_) => Ok(()),
+            Err(fault) => Err(expression(&format!("{place}.acceleration_m_s2"), &fault)),
+        },
+        [Drive::Vortex(Vortex { axis, .. })] => heading(&format!("{place}.vortex.axis"), axis, "an axis"),
+        [Drive::Motor(Motor { axis, .. })] => heading(&format!("{place}.motor.axis"), axis, "an axis"),
+        [Drive::Drag(drag)] if drag.linear_per_s == 0.0 && drag.quadratic_per_m == 0.0 => {
+            conflict(format!("{place}.drag"), "nothing acts", "linear_per_s or quadratic_per_m above 0")
+        }
+        [Drive::Spring(spring)] if spring.to_m.is_some() != spring.path_m.is_empty() => {
+            let message = if spring.to_m.is_some() { "two goals at once" } else { "no goal" };
+            conflict(format!("{place}.spring"), message, "to_m or path_m, one of them")
+        }
+        [Drive::Spring(spring)] => points(&format!("{place}.spring.path_m"), &spring.path_m),
+        [_] => Ok(()),
+        [..] => conflict(place.to_owned(), "several ways at once", WAYS),
+    }
+}
+
+/// A fault of an expression.
+pub(super) fn expression(place: &str, fault: &Fault) -> SpecError {
+    let mut error = SpecError::new(SpecErrorKind::Syntax, place, format!("{fault}"));
+    // Its message says what is near already.
+    error.allowed = None;
+    error
+}
+
+/// All expressions together must compile in a moment.
+fn steps(spec: &Spec) -> Result<(), SpecError> {
+    let texts: BTreeSet<&str> = spec
+        .forces
+        .iter()
+        .flat_map(Force::drives)
+        .filter_map(|d| match d {
+            Drive::Expression(text) => Some(text),
+            _ => None,
+        })
+        .collect();
+    let programs = texts.iter().filter_map(|text| Program::of(&parse(text, Kind::Vector).ok()?).ok());
+    let sum: usize = programs.map(|p| p.instructions.len()).sum();
+    if sum > limits::EXPRESSION_STEPS {
+        let message = format!("the expressions of all forces take {sum} steps");
+        return Err(SpecError::new(SpecErrorKind::Range, "force", message).allowed(format!("at most {}", limits::EXPRESSION_STEPS)));
+    }
+    Ok(())
+}
+
+/// Points of a path: within reach, one after another, and not faster than anything may be.
+fn points(place: &str, path: &[[f64; 4]]) -> Result<(), SpecError> {
+    let refuse = |message: String, allowed: &str| Err(SpecError::new(SpecErrorKind::Conflict, place, message).allowed(allowed));
+    let far = |p: &&[f64; 4]| !(0.0..=limits::TIME_S).contains(&p[0]) || p[1..].iter().any(|x| x.abs() > limits::PLACE_M);
+    if let Some(point) = path.iter().find(far) {
+        return refuse(format!("[{}] is out of range", point.map(number).join(", ")), "times from 0 to 600, places within 1e5 m");
+    }
+    for pair in path.windows(2) {
+        let (span_s, way) = (pair[1][0] - pair[0][0], [1, 2, 3].map(|a| pair[1][a] - pair[0][a]));
+        if span_s <= 0.0 {
+            return refuse(format!("{} s is not after {} s", number(pair[1][0]), number(pair[0][0])), "times that rise from point to point");
+        }
+        let speed = way.iter().map(|x| x * x).sum::<f64>().sqrt() / span_s;
+        if speed > limits::SPEED_M_S {
+            return refuse(format!("{} m/s from {} s on", number(speed.round()), number(pair[0][0])), "at most 200 m/s");
+        }
+    }
+    Ok(())
+}
+
 fn direction(place: &str, plane: &PlaneShape) -> Result<(), SpecError> {
-    let length = plane.normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+    heading(&format!("{place}.normal"), &plane.normal, "a normal")
+}
+
+fn heading(place: &str, vector: &[f64; 3], what: &str) -> Result<(), SpecError> {
+    let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
     if (1e-6..1e6).contains(&length) {
         Ok(())
     } else {
-        Err(SpecError::new(SpecErrorKind::Range, format!("{place}.normal"), format!("a normal of length {} has no direction", number(length)))
+        Err(SpecError::new(SpecErrorKind::Range, place, format!("{what} of length {} has no direction", number(length)))
             .allowed("a direction such as [0, 0, 1]"))
     }
 }

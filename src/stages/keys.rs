@@ -88,11 +88,16 @@ fn end_before(until: Until, to_s: f64) -> Option<f64> {
 }
 
 fn force_until(force: &Force, to_s: f64) -> serde_json::Value {
-    json!([force.object, force.acceleration_m_s2, force.from_s, end_before(force.to_s, to_s)])
+    // The way it acts, whole: a later point of a spring's path is part of it.
+    let way = Force { name: String::new(), to_s: Until::End, ..force.clone() };
+    json!([way, end_before(force.to_s, to_s)])
 }
 
 fn pin_until(pin: &Pin, to_s: f64) -> serde_json::Value {
-    json!([pin.object, pin.region, pin.from_s, end_before(pin.to_s, to_s)])
+    // On the way to a point, the next one counts.
+    let known = pin.path.iter().take_while(|p| p[0] < to_s).count() + 1;
+    let path: Vec<_> = pin.path.iter().take(known).collect();
+    json!([pin.object, pin.region, pin.from_s, end_before(pin.to_s, to_s), path])
 }
 
 /// What the pictures depend on: the whole motion, the skin, the camera, the size, the renderer.

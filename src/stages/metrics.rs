@@ -49,6 +49,10 @@ pub struct SolverMetrics {
     pub retries: u32,
     /// What had to be softened, in words; empty where nothing was.
     pub softened: Vec<String>,
+    /// How often each force gave no number, counted by particle and substep; it counted as zero there.
+    pub undefined: BTreeMap<String, u64>,
+    /// How often a force would have brought a particle beyond 200 m/s, where it was held.
+    pub limited: u64,
     /// Wall seconds of the simulation.
     pub simulate_s: f64,
 }

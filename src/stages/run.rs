@@ -74,6 +74,9 @@ pub(super) fn run(
     let motion = ready.segments.iter().map(|s| ("motion", s.key.as_str()));
     let made = [("scene", ready.keys.scene.as_str()), ("proxy", &ready.keys.proxy), ("bind", &ready.keys.bind), ("picture", &ready.picture)];
     engine.store.pin("head", made.into_iter().chain(motion).filter(|(stage, key)| engine.store.contains(stage, key)))?;
+    let of_forces = summary::of_forces(&done.totals);
+    of_forces.iter().for_each(|w| sink.warning(w));
+    warnings.extend(of_forces);
     let metrics = summary::metrics(spec, &ready, &matter, &done.rows, &done.totals, &seconds, engine.device()?);
     Ok(Report { plan, metrics, camera: ready.resolved.camera, stopped: done.stopped, warnings })
 }

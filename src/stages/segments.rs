@@ -9,6 +9,7 @@ use crate::spec::Spec;
 use crate::store::{Entry, Store};
 use crate::world::measure::Row;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Length of a segment.
 const SEGMENT_S: f64 = 0.25;
@@ -61,6 +62,12 @@ pub(super) struct SolverTotals {
     pub retries: u32,
     pub nonfinite: u64,
     pub softened: Vec<String>,
+    /// How often each force gave no number, by name.
+    #[serde(default)]
+    pub undefined: BTreeMap<String, u64>,
+    /// How often a force was held at the speed that forces end at.
+    #[serde(default)]
+    pub limited: u64,
     pub seconds: f64,
 }
 
@@ -75,6 +82,10 @@ impl SolverTotals {
         self.retries += later.retries;
         self.nonfinite = later.nonfinite.max(self.nonfinite);
         self.seconds += later.seconds;
+        self.limited += later.limited;
+        for (name, times) in &later.undefined {
+            *self.undefined.entry(name.clone()).or_default() += times;
+        }
         for text in &later.softened {
             if !self.softened.contains(text) {
                 self.softened.push(text.clone());

@@ -6,8 +6,8 @@ use super::{ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, StageName,
 use crate::gpu::Gpu;
 use crate::render::View;
 use crate::solver::Advance;
-use crate::spec::Spec;
 use crate::spec::expect::Condition;
+use crate::spec::{Spec, limits};
 use crate::world::bodies::Matter;
 use crate::world::measure::Row;
 use std::collections::BTreeMap;
@@ -24,8 +24,20 @@ pub(super) fn totals(advance: &Advance) -> SolverTotals {
             .iter()
             .map(|s| format!("object {}: young_pa times {} from {:.3} s, to stay stable", s.object, s.factor, s.time_s))
             .collect(),
+        undefined: advance.undefined.iter().cloned().collect(),
+        limited: advance.limited,
         ..SolverTotals::default()
     }
+}
+
+/// What forces did otherwise than they were told, in words.
+pub(super) fn of_forces(totals: &SolverTotals) -> Vec<String> {
+    let undefined = totals.undefined.iter().map(|(name, times)| {
+        format!("force.{name} gave no number {times} times (a division by zero, a root or logarithm of a negative): it counted as zero there")
+    });
+    let limited = (totals.limited > 0)
+        .then(|| format!("forces would have brought particles beyond {} m/s {} times: they were held there", limits::SPEED_M_S, totals.limited));
+    undefined.chain(limited).collect()
 }
 
 /// Everything that was measured.
@@ -55,6 +67,8 @@ pub(super) fn metrics(
             nonfinite: totals.nonfinite,
             retries: totals.retries,
             softened: totals.softened.clone(),
+            undefined: totals.undefined.clone(),
+            limited: totals.limited,
             simulate_s: totals.seconds,
         },
         resolved: resolved(spec, ready, matter),

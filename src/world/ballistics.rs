@@ -2,7 +2,9 @@
 //! anything is simulated. Predicted from the spec, never read from a result.
 
 use super::ObjectFacts;
-use crate::spec::Spec;
+use crate::solver::velocity_change;
+use crate::spec::expression::{Inputs, Program};
+use crate::spec::{FieldFacts, Force, Object, Spec};
 use glam::DVec3;
 
 /// Seconds granted after the last landing or stop, for what ballistics do not know.
@@ -27,55 +29,105 @@ struct Body {
     velocity: DVec3,
 }
 
-/// Follows one object through its launch and its pushes: parabolas until it lands on the height it
-/// stood at, then a slide that friction ends.
+/// What drives one object over spans of time.
+struct Drives {
+    /// From when, until when, and how: constant, or by an expression.
+    spans: Vec<(f64, f64, DVec3, Option<Program>)>,
+    /// The object's centre in the captured pose.
+    centre: DVec3,
+}
+
+impl Drives {
+    fn of(spec: &Spec, thing: &Object, facts: &ObjectFacts) -> Drives {
+        let centre = DVec3::from(facts.centre_m);
+        let start_m = (centre + DVec3::from(thing.offset_m)).into();
+        let facts = FieldFacts { captured_m: facts.centre_m, start_m, seed: spec.seed };
+        let forces = spec.forces.iter().filter(|f| f.object == thing.name);
+        let span = |f: &Force| {
+            let constant = f.constant_m_s2().map_or(DVec3::ZERO, DVec3::from);
+            (f.from_s, f.ends_s(), constant, f.program(&facts).ok().flatten())
+        };
+        Drives { spans: forces.map(span).collect(), centre }
+    }
+
+    /// When the last of them ends.
+    fn end_s(&self) -> f64 {
+        self.spans.iter().map(|s| s.1).fold(0.0, f64::max)
+    }
+
+    /// Change of velocity over a step.
+    fn change(&self, body: &Body, time_s: f64, step_s: f64) -> DVec3 {
+        let acting = || self.spans.iter().filter(|s| s.0 < time_s + step_s && s.1 > time_s);
+        let share = |s: &(f64, f64, DVec3, Option<Program>)| (s.1.min(time_s + step_s) - s.0.max(time_s)) / step_s;
+        let constant: DVec3 = acting().map(|s| s.2 * (step_s * share(s))).sum();
+        let here = Inputs {
+            position_m: (self.centre + body.at).into(),
+            velocity_m_s: body.velocity.into(),
+            rest_m: self.centre.into(),
+            time_s: time_s + 0.5 * step_s,
+            mass_kg: 1e-3,
+            seed: 0.0,
+        };
+        let driven = acting().filter_map(|s| Some(velocity_change([s.3.as_ref()?], &here, step_s) * share(s)));
+        constant + driven.sum::<DVec3>()
+    }
+}
+
+/// Follows one object through its launch, its pushes and what drives it: parabolas until it lands on the
+/// height it stood at, then a slide that friction ends.
 pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, until_s: f64) -> Path {
     let gravity = DVec3::from(spec.world.gravity_m_s2);
     let Some(thing) = spec.objects.get(object) else { return Path::default() };
     let floor = facts.support_m - facts.low_m[2];
+    let drives = Drives::of(spec, thing, facts);
     let mut body = Body { at: DVec3::from(thing.offset_m), velocity: DVec3::from(thing.velocity_m_s) };
     let mut events: Vec<_> = spec.events.iter().filter(|e| e.object == thing.name).collect();
     events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
     let mut path = Path { points: vec![body.at], rests_s: 0.0 };
     let mut now = 0.0;
+    let ground = Ground { floor, gravity, friction: spec.world.ground.friction };
     for event in events {
-        travel(&mut body, now, event.at_s.min(until_s), floor, gravity, spec.world.ground.friction, &mut path);
+        travel(&mut body, now, event.at_s.min(until_s), &ground, &drives, &mut path);
         now = event.at_s;
         body.velocity = event.velocity_m_s.map_or(body.velocity, DVec3::from) + event.push_m_s.map_or(DVec3::ZERO, DVec3::from);
     }
-    for force in spec.forces.iter().filter(|f| f.object == thing.name) {
-        let end = match force.to_s {
-            crate::spec::Until::End => until_s,
-            crate::spec::Until::Time(t) => t.min(until_s),
-        };
-        let span = (end - force.from_s).max(0.0);
-        body.velocity += DVec3::from(force.acceleration_m_s2) * span * 0.5;
-        path.rests_s = path.rests_s.max(end);
-    }
-    travel(&mut body, now, until_s.max(now), floor, gravity, spec.world.ground.friction, &mut path);
+    travel(&mut body, now, until_s.max(now), &ground, &drives, &mut path);
+    path.rests_s = path.rests_s.max(drives.end_s().min(until_s));
     path
 }
 
+/// What it lands and slides on.
+struct Ground {
+    floor: f64,
+    gravity: DVec3,
+    friction: f64,
+}
+
 /// Small steps are enough: the result frames a picture and rounds to whole frames.
-fn travel(body: &mut Body, from_s: f64, to_s: f64, floor: f64, gravity: DVec3, friction: f64, path: &mut Path) {
+fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Drives, path: &mut Path) {
     let step_s = 0.01;
-    let brake = friction.max(LEAST_FRICTION) * (-gravity.z).max(0.0) * step_s;
+    let (floor, gravity) = (ground.floor, ground.gravity);
+    let brake = ground.friction.max(LEAST_FRICTION) * (-gravity.z).max(0.0) * step_s;
     let mut now = from_s;
     while now < to_s {
-        let flying = body.at.z > floor + 1e-4 || body.velocity.z > 1e-3 || gravity.z >= 0.0;
+        let change = drives.change(body, now, step_s);
+        body.velocity += change;
+        let lifted = change.z + gravity.z * step_s > 0.0;
+        let flying = body.at.z > floor + 1e-4 || body.velocity.z > 1e-3 || gravity.z >= 0.0 || lifted;
         if flying {
             body.velocity += gravity * step_s;
         } else {
             let flat = body.velocity.truncate();
             let speed = flat.length();
-            if speed <= brake {
+            if speed <= brake && now > drives.end_s() {
                 body.velocity = DVec3::ZERO;
                 now = to_s;
                 path.points.push(body.at);
                 continue;
             }
-            body.velocity = (flat * (1.0 - brake / speed)).extend(0.0);
+            body.velocity = (flat * (1.0 - brake / speed.max(brake).max(1e-12))).extend(0.0);
         }
+        let before = body.at;
         body.at += body.velocity * step_s;
         if body.at.z < floor {
             body.at.z = floor;
@@ -83,7 +135,9 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, floor: f64, gravity: DVec3, f
         }
         now += step_s;
         path.points.push(body.at);
-        path.rests_s = path.rests_s.max(now);
+        if body.at != before {
+            path.rests_s = path.rests_s.max(now);
+        }
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::Resolved;
 use super::bodies::Matter;
-use crate::solver::{Collider, ObjectForce, PinRegion, Plane, Settings};
-use crate::spec::{BoxShape, ColliderShape, PlaneShape, Region, Spec, Until};
-use glam::Vec3;
+use crate::solver::{Collider, Field, ObjectForce, PinRegion, Plane, Settings};
+use crate::spec::{BoxShape, ColliderShape, FieldFacts, Force, PlaneShape, Region, Spec, Until};
+use glam::{DVec3, Vec3};
 
 /// What surrounds the particles of a spec.
 pub fn settings(spec: &Spec, matter: &Matter, resolved: &Resolved) -> Settings {
@@ -23,14 +23,24 @@ pub fn settings(spec: &Spec, matter: &Matter, resolved: &Resolved) -> Settings {
             .forces
             .iter()
             .filter_map(|f| {
-                let acceleration_m_s2 = Vec3::from(f.acceleration_m_s2.map(|a| a as f32));
-                Some(ObjectForce { object: object(&f.object)? as u32, from_s: f.from_s, to_s: end_s(f.to_s), acceleration_m_s2 })
+                let acceleration_m_s2 = Vec3::from(f.constant_m_s2()?.map(|a| a as f32));
+                Some(ObjectForce { object: object(&f.object)? as u32, from_s: f.from_s, to_s: f.ends_s(), acceleration_m_s2 })
             })
             .collect(),
+        fields: spec.forces.iter().filter_map(|f| field(f, spec, matter, object(&f.object)?)).collect(),
         frame_s: 1.0 / f64::from(spec.time.fps),
         seed: spec.seed,
         ..Settings::new(resolved.cell_m as f32)
     }
+}
+
+/// A force that is an expression. One that cannot be read is no part of a valid spec.
+fn field(force: &Force, spec: &Spec, matter: &Matter, object: usize) -> Option<Field> {
+    let captured_m = matter.centre_m[object].as_dvec3();
+    let start_m = captured_m + DVec3::from(spec.objects[object].offset_m);
+    let facts = FieldFacts { captured_m: captured_m.into(), start_m: start_m.into(), seed: spec.seed };
+    let acceleration = force.program(&facts).ok().flatten()?;
+    Some(Field { name: force.name.clone(), object: object as u32, from_s: force.from_s, to_s: force.ends_s(), acceleration })
 }
 
 fn end_s(until: Until) -> f64 {
@@ -60,5 +70,5 @@ fn pin(pin: &crate::spec::Pin, matter: &Matter, object: usize) -> PinRegion {
         Region::Sphere(shape) => ColliderShape::Sphere(shape),
         Region::HalfSpace(PlaneShape { point_m, normal }) => ColliderShape::Plane(PlaneShape { point_m, normal }),
     };
-    PinRegion { shape, low_m: low, high_m: high, from_s: pin.from_s, to_s: end_s(pin.to_s) }
+    PinRegion { shape, low_m: low, high_m: high, from_s: pin.from_s, to_s: end_s(pin.to_s), path: pin.path.clone() }
 }

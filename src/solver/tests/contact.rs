@@ -100,7 +100,14 @@ fn a_pin_holds_and_lets_go() {
     let particles = block(Vec3::ZERO, Vec3::new(0.1, 0.1, 0.2), 0.025, 2e6, 0.3);
     let mut settings = Settings::new(CELL_M);
     let top = PlaneShape { point_m: [0.0, 0.0, 0.1], normal: [0.0, 0.0, -1.0] };
-    settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m: Vec3::ZERO, high_m: Vec3::new(0.1, 0.1, 0.2), from_s: 0.0, to_s: 0.1 }];
+    settings.pins = vec![PinRegion {
+        shape: ColliderShape::Plane(top),
+        low_m: Vec3::ZERO,
+        high_m: Vec3::new(0.1, 0.1, 0.2),
+        from_s: 0.0,
+        to_s: 0.1,
+        path: vec![],
+    }];
     let mut solver = solver(settings, &particles);
     let start = centre_m(&solver).z;
     solver.advance(0.1, &Stop::default()).expect("an advance");

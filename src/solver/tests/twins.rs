@@ -54,7 +54,7 @@ fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
     ];
     let top = PlaneShape { point_m: [0.0, 0.0, 0.16], normal: [0.0, 0.0, -1.0] };
     let (low_m, high_m) = (Vec3::ZERO, Vec3::splat(0.2));
-    settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0 }];
+    settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0, path: vec![[0.5, 0.1, -0.2, 0.3]] }];
     settings.forces = vec![crate::solver::ObjectForce { object: 1, from_s: 0.0, to_s: 1.0, acceleration_m_s2: Vec3::new(3.0, -2.0, 1.0) }];
     let mut solver = solver(settings, &particles);
     let mut count = 0;
@@ -110,7 +110,7 @@ fn sort(solver: &mut Solver) {
     solver.current = 1 - solver.current;
 }
 
-const SUBSTEP: Substep = Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job: 0 };
+const SUBSTEP: Substep = Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job: 0, since_s: 0.003 };
 
 /// Storage index of a node, z first.
 fn stored(node: &[i32; 3], solver: &Solver) -> usize {
@@ -159,7 +159,7 @@ fn one_substep_of_other_laws() {
 fn follows_the_twins(substances: [Substance; 2]) {
     let (mut solver, mut states) = scene_of(substances);
     let colliders = obstacles::colliders(&solver.settings);
-    let pins = [obstacles::pin(&solver.settings.pins[0], CELL_M)];
+    let pins = [obstacles::pin(&solver.settings.pins[0], CELL_M, 0.0)];
     let accelerations = [Vec3::ZERO, Vec3::new(3.0, -2.0, 1.0)];
     let substances = solver.laws.substances.clone();
     let shown_before: Vec<[[f32; 4]; 3]> =
@@ -214,7 +214,7 @@ fn follows_the_twins(substances: [Substance; 2]) {
     // Grid: velocities, from which momenta follow too.
     run(|r| r.indirect_with(&passes.grid, &b.grid, &SUBSTEP, &grid.active_groups, 0));
     let mut want = want;
-    twin::grid(&mut want, &around, DT_S);
+    twin::grid(&mut want, &around, DT_S, SUBSTEP.since_s);
     let velocity: Vec<[f32; 4]> = gpu().read(&grid.velocity, nodes).expect("velocity");
     for (node, value) in want.iter().filter(|(_, v)| v.mass > 1e-2 * heaviest) {
         let scale = (strongest / value.mass) as f32;

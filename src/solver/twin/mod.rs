@@ -124,7 +124,7 @@ pub fn mark_gap_m(mark: u32, params: &Params) -> f32 {
 }
 
 /// `grid.wgsl`: velocities after gravity, contact and pins.
-pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32) {
+pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32, since_s: f32) {
     for (node, value) in grid.iter_mut() {
         let x = Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * around.params.cell_m;
         let mut v = (value.momentum / value.mass).as_vec3() + Vec3::from(around.params.gravity_m_s2) * dt_s;
@@ -133,14 +133,15 @@ pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32) {
                 v = respond(v, mark, x, around, dt_s);
             }
         }
-        if around.pins.iter().any(|pin| pinned(pin, x)) {
-            v = Vec3::ZERO;
+        if let Some(pin) = around.pins.iter().find(|pin| pinned(pin, x, since_s)) {
+            v = Vec3::from_slice(&pin.velocity);
         }
         value.velocity = v;
     }
 }
 
-fn pinned(pin: &PinRecord, x: Vec3) -> bool {
+fn pinned(pin: &PinRecord, x: Vec3, since_s: f32) -> bool {
+    let x = x - (Vec3::from_slice(&pin.shift) + Vec3::from_slice(&pin.velocity) * since_s);
     let shape = ColliderRecord { at: pin.at, shape: pin.shape, surface: [0.0; 4] };
     x.cmpge(Vec3::from_slice(&pin.low)).all() && x.cmple(Vec3::from_slice(&pin.high)).all() && shape.touch(x).distance_m <= 0.0
 }

@@ -1,15 +1,15 @@
-//! What holds, meets and drives objects: pins, colliders, forces.
+//! What holds and meets objects: pins, colliders.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::spec::auto::Until;
-use crate::spec::limits::{self, length};
+use crate::spec::limits;
 use crate::spec::path::NAME_PATTERN;
 
 use super::{ColliderShape, Region};
 
-/// Holds part of an object still.
+/// Holds part of an object: still, or along a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pin {
@@ -28,6 +28,11 @@ pub struct Pin {
     #[serde(default)]
     #[schemars(extend("minimum" = 0.0, "maximum" = limits::TIME_S))]
     pub to_s: Until,
+    /// Points `[t, dx, dy, dz]` that it takes its part along, straight from one to the next: seconds, then metres
+    /// from where it began. It starts from there at `from_s`, and stands still after the last.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = limits::PATH))]
+    pub path: Vec<[f64; 4]>,
 }
 
 /// A static thing that objects collide with.
@@ -51,26 +56,4 @@ pub struct Collider {
 
 fn default_friction() -> f64 {
     0.3
-}
-
-/// An acceleration of one object over a span of time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Force {
-    /// Its name, unique among forces.
-    #[schemars(regex(pattern = NAME_PATTERN))]
-    pub name: String,
-    /// The object it moves.
-    pub object: String,
-    /// From when.
-    #[serde(default)]
-    #[schemars(range(min = 0.0, max = limits::TIME_S))]
-    pub from_s: f64,
-    /// Until when.
-    #[serde(default)]
-    #[schemars(extend("minimum" = 0.0, "maximum" = limits::TIME_S))]
-    pub to_s: Until,
-    /// World frame.
-    #[schemars(transform = length(limits::ACCELERATION_M_S2))]
-    pub acceleration_m_s2: [f64; 3],
 }

@@ -2,6 +2,7 @@
 
 mod around;
 mod event;
+mod force;
 mod material;
 mod object;
 mod scene;
@@ -10,6 +11,7 @@ mod view;
 
 pub use around::*;
 pub use event::*;
+pub use force::*;
 pub use material::*;
 pub use object::*;
 pub use scene::*;

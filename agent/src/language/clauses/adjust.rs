@@ -325,7 +325,7 @@ fn current_speed(draft: &Draft, object: usize) -> Option<f64> {
     match target(draft, object)? {
         Target::Velocity => Some(DVec3::from_array(thing.velocity_m_s).length()),
         Target::Event(i) => draft.spec.events[i].push_m_s.map(|p| DVec3::from_array(p).length()),
-        Target::Force(i) => Some(DVec3::from_array(draft.spec.forces[i].acceleration_m_s2).length()),
+        Target::Force(i) => draft.spec.forces[i].strength().map(|(strength, _)| strength),
         Target::Spin => Some(DVec3::from_array(thing.spin_rad_s).length()),
     }
 }
@@ -343,7 +343,7 @@ fn target(draft: &Draft, object: usize) -> Option<Target> {
     let moves = thing.velocity_m_s != [0.0; 3];
     let spins = thing.spin_rad_s != [0.0; 3];
     let event = draft.spec.events.iter().rposition(|e| e.object == thing.name && e.push_m_s.is_some());
-    let force = draft.spec.forces.iter().rposition(|f| f.object == thing.name);
+    let force = draft.spec.forces.iter().rposition(|f| f.object == thing.name && f.strength().is_some());
     if let Some(before) = draft.context.previous_spec {
         let was = before.objects.iter().find(|o| o.name == thing.name);
         let now = &draft.context.spec;
@@ -386,8 +386,12 @@ pub fn speed(draft: &mut Draft, objects: &[usize], ratio: f64) -> Result<(), Ref
             }
             Target::Force(i) => {
                 let force = &mut draft.spec.forces[i];
-                force.acceleration_m_s2 = scaled(force.acceleration_m_s2);
-                format!("{} of {name} has {} instead of {}", force.name, say::acceleration(before * ratio), say::acceleration(before))
+                let unit = force.strength().map_or("", |(_, unit)| unit);
+                match force.constant_m_s2() {
+                    Some(acceleration) => force.set_constant(scaled(acceleration)),
+                    None => force.scale(ratio),
+                }
+                format!("{} of {name} has {} {unit} instead of {} {unit}", force.name, say::short(before * ratio), say::short(before))
             }
             Target::Spin => {
                 draft.object(object).spin_rad_s = scaled(draft.spec.objects[object].spin_rad_s);

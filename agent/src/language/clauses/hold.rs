@@ -37,7 +37,7 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
             None => {
                 let taken = |name: &str| draft.spec.pins.iter().any(|p| p.name == name);
                 let name = if taken(stem) { draft.free_name(stem, |spec, name| spec.pins.iter().any(|p| p.name == name)) } else { stem.to_owned() };
-                draft.spec.pins.push(Pin { name, object: object.clone(), region, from_s, to_s });
+                draft.spec.pins.push(Pin { name, object: object.clone(), region, from_s, to_s, path: Vec::new() });
             }
         }
         let until = until.map_or("to the end".to_owned(), |to| format!("to {}", say::seconds(to)));

@@ -348,10 +348,13 @@ fn pull(verb: Verb, clause: &mut Clause, draft: &mut Draft, objects: &[usize], a
         let acceleration_m_s2 = say::tidy3(heading.unit * amount);
         let same = |f: &&mut Force| f.object == name && f.from_s == from_s && f.name.starts_with(stem);
         match draft.spec.forces.iter_mut().find(same) {
-            Some(force) => (force.to_s, force.acceleration_m_s2) = (to_s, acceleration_m_s2),
+            Some(force) => {
+                force.to_s = to_s;
+                force.set_constant(acceleration_m_s2);
+            }
             None => {
                 let force = draft.free_name(stem, |spec, name| spec.forces.iter().any(|f| f.name == name));
-                draft.spec.forces.push(Force { name: force, object: name.clone(), from_s, to_s, acceleration_m_s2 });
+                draft.spec.forces.push(Force::constant(&force, &name, from_s, to_s, acceleration_m_s2));
             }
         }
         let until = match to_s {

@@ -69,7 +69,10 @@ fn follow(draft: &mut Draft, how: Follow) -> Result<(), Refusal> {
     }
     for (i, force) in now.forces.iter().enumerate() {
         if before.forces.iter().find(|f| f.name == force.name) != Some(force) {
-            draft.spec.forces[i].acceleration_m_s2 = along(DVec3::ZERO, DVec3::from_array(force.acceleration_m_s2), how, true);
+            match force.constant_m_s2() {
+                Some(a) => draft.spec.forces[i].set_constant(along(DVec3::ZERO, DVec3::from_array(a), how, true)),
+                None => draft.spec.forces[i].scale(along(DVec3::ZERO, DVec3::X, how, true)[0]),
+            }
             said.push(format!("{} of {}", force.name, force.object));
         }
     }
