@@ -132,11 +132,13 @@ pub(crate) fn grown(choices: &mut std::slice::Iter<u32>, kind: Kind, depth: usiz
     let scalar = |c: &mut std::slice::Iter<u32>| grown(c, Kind::Scalar, depth - 1);
     use super::function::Rule;
     let args = match entry.rule {
-        Rule::Each(count) => (0..count).map(|k| if k > 0 && pick % 3 == 0 { scalar(choices) } else { grown(choices, kind, depth - 1) }).collect(),
+        Rule::Each(count) => {
+            (0..count).map(|k| if k > 0 && pick.is_multiple_of(3) { scalar(choices) } else { grown(choices, kind, depth - 1) }).collect()
+        }
         Rule::Compare => vec![scalar(choices), scalar(choices)],
         Rule::Logic(count) => (0..count).map(|_| grown(choices, Kind::Truth, depth - 1)).collect(),
         Rule::Choice => vec![grown(choices, Kind::Truth, depth - 1), grown(choices, kind, depth - 1), scalar(choices)],
-        Rule::Build => (0..if pick % 4 == 0 { 1 } else { 3 }).map(|_| scalar(choices)).collect(),
+        Rule::Build => (0..if pick.is_multiple_of(4) { 1 } else { 3 }).map(|_| scalar(choices)).collect(),
         Rule::Measure(count) | Rule::Vectors(count) => (0..count).map(|_| vector(choices)).collect(),
         Rule::Noise => vec![vector(choices)],
         Rule::Number => vec![scalar(choices)],
@@ -150,7 +152,7 @@ pub(crate) fn grown(choices: &mut std::slice::Iter<u32>, kind: Kind, depth: usiz
 fn leaf(pick: usize, kind: Kind) -> Tree {
     let named = |name: usize| Tree::name(Name::ALL[name]);
     match kind {
-        Kind::Scalar if pick % 3 == 0 => Tree::number(pick as f64 % 1000.0 * 0.0625),
+        Kind::Scalar if pick.is_multiple_of(3) => Tree::number(pick as f64 % 1000.0 * 0.0625),
         Kind::Scalar => named(3 + pick % 4),
         Kind::Vector => named(pick % 3),
         Kind::Truth => Tree::call(Function::Less, vec![named(3), Tree::number(pick as f64 % 4.0)]).expect("a comparison"),
