@@ -34,6 +34,9 @@ macro_rules! long_cases {
 long_cases! {
     a_cantilever_bends_as_timoshenko_says: "V5";
     a_cantilever_swings_as_its_beam_does: "V6";
+    sand_comes_to_rest_at_its_angle: "V13 slope at rest";
+    slabs_of_grains_run_out_as_experiments_say: "V14";
+    a_cylinder_of_sand_runs_out_as_experiments_say: "V15";
     what_was_captured_standing_stays_as_it_stands: "left alone";
     what_is_dropped_bends_and_comes_back: "dropped";
 }

@@ -208,7 +208,8 @@ impl Solver {
         let parts = (until_s - self.time_s) / dt_s;
         let whole = (parts + 1e-6).floor();
         let rest_s = (parts - whole) * dt_s;
-        let cut = rest_s > 1e-6 * dt_s;
+        // However little is left, it is a substep.
+        let cut = rest_s > 1e-6 * dt_s || whole < 1.0;
         // Half the slack by the present speed; the watch sees to the rest.
         let sorts = 0.5 * f64::from(SLACK_CELLS) * cell_m / (speed_m_s * dt_s).max(1e-12);
         Plan {

@@ -24,7 +24,7 @@ pub(super) fn rows(m: Mat3) -> Rows {
     m.transpose().to_cols_array_2d().map(|row| [row[0], row[1], row[2], 0.0])
 }
 
-fn from_rows(rows: &Rows) -> Mat3 {
+pub(super) fn from_rows(rows: &Rows) -> Mat3 {
     Mat3::from_cols_array_2d(&rows.map(|row| [row[0], row[1], row[2]])).transpose()
 }
 
@@ -96,12 +96,23 @@ impl Solver {
 
     /// Changes what is shown, particle by particle in the original order.
     pub(super) fn edit_shown(&mut self, mut change: impl FnMut(usize, Mat3) -> Mat3) -> Result<(), SolverError> {
-        if let Some(kept) = &self.laws.shown {
-            let mut shown: Vec<Rows> = self.gpu.read(&kept.live, self.params.count as usize)?;
-            shown.iter_mut().enumerate().for_each(|(i, f)| *f = rows(change(i, from_rows(f))));
-            self.gpu.upload(&kept.live, &shown);
-        }
+        let mut shown = self.shown()?;
+        shown.iter_mut().enumerate().for_each(|(i, f)| *f = rows(change(i, from_rows(f))));
+        self.set_shown(&shown);
         Ok(())
+    }
+
+    /// What is shown, in the original order; nothing where no law needs it.
+    pub(super) fn shown(&self) -> Result<Vec<Rows>, SolverError> {
+        let kept = self.laws.shown.as_ref();
+        Ok(kept.map(|k| self.gpu.read(&k.live, self.params.count as usize)).transpose()?.unwrap_or_default())
+    }
+
+    /// Replaces it.
+    pub(super) fn set_shown(&self, shown: &[Rows]) {
+        if let Some(kept) = &self.laws.shown {
+            self.gpu.upload(&kept.live, shown);
+        }
     }
 
     /// Uploads the activations of a segment: each row's at each boundary of its substeps.

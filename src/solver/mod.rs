@@ -11,6 +11,7 @@ mod passes;
 
 mod advance;
 mod bench;
+mod change;
 mod checkpoint;
 mod constants;
 mod core;
@@ -34,6 +35,7 @@ mod tests;
 mod twin;
 
 pub use bench::{BenchReport, bench_substep};
+pub use change::Moduli;
 pub use core::Solver;
 pub use fields::velocity_change;
 pub use substance::{Activation, Substance};

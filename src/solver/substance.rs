@@ -1,8 +1,9 @@
 //! What particles are made of: a table of substances, a row for each, that the passes read.
 
+use super::constants::{J_LEAST, LOOSE_MOST};
 use crate::spec::ElasticModel;
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// A constitutive law and its numbers. Moduli and density are each particle's own.
@@ -160,6 +161,21 @@ impl Substance {
             // det of the plastic part of F.
             Substance::Snow { .. } => 1.0,
             _ => 0.0,
+        }
+    }
+
+    /// F and history with which matter goes on under this law that comes from another: solids keep the
+    /// stress that their F carries, sand of it the pressure alone, and what has come apart is loose.
+    pub(super) fn taken_over(&self, before: &Substance, f: Mat3, history: f32) -> (Mat3, f32) {
+        if std::mem::discriminant(self) == std::mem::discriminant(before) {
+            return (f, history);
+        }
+        match self {
+            Substance::Sand { .. } => {
+                let volume = f.determinant().max(J_LEAST);
+                (Mat3::from_diagonal(Vec3::splat(volume.min(1.0).cbrt())), volume.ln().clamp(0.0, LOOSE_MOST))
+            }
+            _ => (f, self.first_history()),
         }
     }
 

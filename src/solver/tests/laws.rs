@@ -152,7 +152,7 @@ fn singular_values_hold_for_any_matrix() {
 }
 
 /// One of each law, with numbers at which a good share of the trials yields.
-pub(super) fn all_laws() -> Vec<Substance> {
+pub(in crate::solver) fn all_laws() -> Vec<Substance> {
     vec![
         Substance::Elastic(ElasticModel::Corotated),
         Substance::Elastic(ElasticModel::NeoHookean),
@@ -171,11 +171,11 @@ fn each_law_answers_as_its_twin_does() {
     let substances = all_laws();
     let all = trials(substances.len() * 400, &[1e-4, 5e-3, 3e-2, 0.1, 0.4]);
     let history = |k: usize| match &substances[k % substances.len()] {
-        Substance::Snow { .. } => [0.7, 1.0, 1.1][k % 3],
-        Substance::Sand { .. } => [0.0, 0.01, 0.2][k % 3],
-        _ => [0.0, 0.05, 2.0][k % 3],
+        Substance::Snow { .. } => [0.7, 1.0, 1.1][k / substances.len() % 3],
+        Substance::Sand { .. } => [0.0, 0.01, 0.2][k / substances.len() % 3],
+        _ => [0.0, 0.05, 2.0][k / substances.len() % 3],
     };
-    let numbers: Vec<[f32; 4]> = (0..all.len()).map(|k| [4e4, 6e4, history(k / substances.len() + k), 5e-4]).collect();
+    let numbers: Vec<[f32; 4]> = (0..all.len()).map(|k| [4e4, 6e4, history(k), 5e-4]).collect();
     let mut yielded = vec![0; substances.len()];
     for (k, (trial, got)) in all.iter().zip(probe(&substances, &all, &numbers)).enumerate() {
         let [mu, lambda, history, dt_s] = numbers[k].map(f64::from);
@@ -191,7 +191,9 @@ fn each_law_answers_as_its_twin_does() {
         }
         // The rotation of what is inside out is found by turns that come to it slowly.
         let flat = trial.determinant() < f64::from(constants::FLAT);
-        let (tolerance, scale) = (if flat { 5e-3 } else { 2e-5 }, entries(want.tau).max(0.1 * mu));
+        // An exponential of ten times the packing makes ten times its error.
+        let exact = if matches!(substance, Substance::Snow { .. }) { 4e-4 } else { 4e-5 };
+        let (tolerance, scale) = (if flat { 5e-3 } else { exact }, entries(want.tau).max(0.1 * mu));
         assert!(entries(got.tau - want.tau) < tolerance * scale, "{name}: tau is {} and by the twin {}", got.tau, want.tau);
         assert!(entries(got.f - want.f) < tolerance * entries(*trial).max(1.0), "{name}: F is {} and by the twin {}", got.f, want.f);
         assert!((got.history - want.history).abs() < 2e-5 * want.history.abs().max(1.0), "{name}: history {} and {}", got.history, want.history);

@@ -1,8 +1,9 @@
 //! Tests of the whole solver on a device, and of each kernel against its twin.
 
+mod change;
 mod contact;
 mod fields;
-mod laws;
+pub(super) mod laws;
 mod library;
 mod motion;
 mod prestress;

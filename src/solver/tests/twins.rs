@@ -8,8 +8,8 @@ use crate::solver::obstacles;
 use crate::solver::state::ParticleState;
 use crate::solver::substance::Substance;
 use crate::solver::twin::{self, Surroundings};
-use crate::solver::validate::block;
-use crate::solver::{Collider, Particles, PinRegion, Plane, Settings};
+use crate::solver::validate::{append, block};
+use crate::solver::{Collider, PinRegion, Plane, Settings};
 use crate::spec::{BoxShape, ColliderShape, ElasticModel, PlaneShape, SphereShape};
 use glam::{IVec3, Mat3, Vec3};
 
@@ -39,8 +39,9 @@ fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
     let (mut noise, mut past) = (Noise(7), Noise(5));
     let mut particles = block(Vec3::new(0.0, 0.0, 0.01), Vec3::splat(0.2), 0.025, 2e5, 0.3);
     let other = block(Vec3::new(0.19, 0.05, 0.02), Vec3::splat(0.1), 0.02, 5e4, 0.2);
-    append(&mut particles, other);
-    particles.substances = substances.to_vec();
+    let [first, second] = substances.clone();
+    particles.substances = vec![first];
+    append(&mut particles, other, second);
     for x in &mut particles.position_m {
         *x += noise.vec() * 0.008;
     }
@@ -80,18 +81,6 @@ fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
     solver.start_segment();
     let states = solver.states().expect("states");
     (solver, states)
-}
-
-fn append(to: &mut Particles, from: Particles) {
-    let n = from.len();
-    to.position_m.extend(from.position_m);
-    to.velocity_m_s.extend(from.velocity_m_s);
-    to.volume_m3.extend(from.volume_m3);
-    to.density_kg_m3.extend(from.density_kg_m3);
-    to.young_pa.extend(from.young_pa);
-    to.poisson.extend(from.poisson);
-    to.substance.extend(vec![1; n]);
-    to.object.extend(vec![1; n]);
 }
 
 fn gpu() -> Gpu {

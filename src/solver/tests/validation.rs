@@ -36,8 +36,14 @@ quick_cases! {
     v2_momentum: "V2";
     v3_angular_momentum: "V3";
     v4_spinning_rod: "V4";
+    a_bending_bar: "bending bar";
     v7_column: "V7";
     v8_wave_in_a_bar: "V8";
     v11_block_on_a_slope: "V11";
+    v13_incline: "V13";
+    v16_tension: "V16";
+    bingham_flows: "Bingham";
+    v17_snow: "V17";
+    a_muscle_shortens: "muscle";
     v26_same_bits: "V26";
 }

@@ -31,6 +31,21 @@ pub(in crate::solver) fn block(low_m: Vec3, size_m: Vec3, spacing_m: f32, young_
     }
 }
 
+/// Adds a body of another object and substance.
+pub(in crate::solver) fn append(to: &mut Particles, from: Particles, substance: Substance) {
+    let n = from.len();
+    let object = to.object.iter().max().map_or(0, |o| o + 1);
+    to.position_m.extend(from.position_m);
+    to.velocity_m_s.extend(from.velocity_m_s);
+    to.volume_m3.extend(from.volume_m3);
+    to.density_kg_m3.extend(from.density_kg_m3);
+    to.young_pa.extend(from.young_pa);
+    to.poisson.extend(from.poisson);
+    to.substance.extend(vec![to.substances.len() as u16; n]);
+    to.substances.push(substance);
+    to.object.extend(vec![object; n]);
+}
+
 /// Sets velocity + spin x (x - centre) on every particle.
 pub(super) fn set_moving(particles: &mut Particles, centre_m: Vec3, velocity_m_s: Vec3, spin_rad_s: Vec3) {
     for (v, x) in particles.velocity_m_s.iter_mut().zip(&particles.position_m) {

@@ -111,3 +111,56 @@ pub(super) fn spinning_rod(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let check = Check::new("V4 spinning rod", "rho w^2 L^3 / (3 E)", "bar under its own centrifugal load", "m");
     Ok(vec![check.compare(expected, sum / f64::from(samples), 0.1)])
 }
+
+/// First frequency of bending of a free bar of length `l`, height `h` (ASTM E1876, eq. 1 and 2).
+fn bar_frequency_hz(l: f64, h: f64, young_pa: f64, density_kg_m3: f64, nu: f64) -> f64 {
+    let t2 = (h / l).powi(2);
+    let shear = 8.34 * (1.0 + 0.2023 * nu + 2.173 * nu * nu) * t2 * t2 / (1.0 + 6.338 * (1.0 + 0.1408 * nu + 1.536 * nu * nu) * t2);
+    let correction = 1.0 + 6.585 * (1.0 + 0.0752 * nu + 0.8109 * nu * nu) * t2 - 0.868 * t2 * t2 - shear;
+    (young_pa * h * h / (0.9465 * density_kg_m3 * l.powi(4) * correction)).sqrt()
+}
+
+/// First frequency of a bar that was set bending by a push in the shape of its first mode, from when it
+/// is straight again.
+fn bending_bar_hz(gpu: &Gpu, l: f32, h: f32, young_pa: f32, poisson: f32) -> Result<f64, SolverError> {
+    let mut particles = block(Vec3::new(0.0, 0.0, -0.5 * h), Vec3::new(l, 2.0 * CELL_M, h), SPACING_M, young_pa, poisson);
+    // cosh + cos - 0.9825 (sinh + sin) of 4.730 x / l.
+    let shape = |x: f32| {
+        let k = 4.730_041 * f64::from(x / l);
+        k.cosh() + k.cos() - 0.982_502 * (k.sinh() + k.sin())
+    };
+    let mode: Vec<f64> = particles.position_m.iter().map(|p| shape(p.x)).collect();
+    for (v, m) in particles.velocity_m_s.iter_mut().zip(&mode) {
+        *v = Vec3::Z * (0.05 * m) as f32;
+    }
+    let mut solver = Solver::new(gpu, weightless(), &particles)?;
+    let bent = |solver: &Solver| -> Result<f64, SolverError> {
+        let states = solver.states()?;
+        let moved = states.iter().zip(&particles.position_m).zip(&mode).map(|((s, p), m)| f64::from(s.position_m.z - p.z) * m);
+        Ok(moved.sum())
+    };
+    let expected_s = 1.0 / bar_frequency_hz(l.into(), h.into(), young_pa.into(), 1000.0, poisson.into());
+    let (samples, mut before) = (64, (0.0, 0.0));
+    for k in 1..=samples {
+        let t = 0.8 * expected_s * f64::from(k) / f64::from(samples);
+        solver.advance(t, &Stop::default())?;
+        let now = bent(&solver)?;
+        if k > 4 && now <= 0.0 {
+            let (t0, b0): (f64, f64) = before;
+            return Ok(0.5 / (t0 + (t - t0) * b0 / (b0 - now)));
+        }
+        before = (t, now);
+    }
+    Ok(f64::NAN)
+}
+
+/// How fast free bars bend to and fro, up to nearly incompressible.
+pub(super) fn bending_bar(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let of = |name, poisson: f32| {
+        let (l, h, young_pa) = (1.2f32, 0.2f32, 3e7f32);
+        let expected = bar_frequency_hz(l.into(), h.into(), young_pa.into(), 1000.0, poisson.into());
+        let check = Check::new(name, "sqrt(E h^2 / (0.9465 rho L^4 T1))", "ASTM E1876, free bar", "Hz");
+        Ok::<Check, SolverError>(check.compare(expected, bending_bar_hz(gpu, l, h, young_pa, poisson)?, 0.05))
+    };
+    Ok(vec![of("bending bar, nu = 0", 0.0)?, of("bending bar, nu = 0.3", 0.3)?, of("bending bar, nu = 0.49", 0.49)?])
+}

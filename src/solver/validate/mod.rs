@@ -2,14 +2,18 @@
 
 mod bodies;
 mod captured;
+mod flakes;
 mod free;
+mod grains;
 mod loaded;
+mod muscles;
+mod pulled;
 mod repeat;
 mod sliding;
 mod waves;
 
 #[cfg(test)]
-pub(super) use bodies::block;
+pub(super) use bodies::{append, block};
 #[cfg(test)]
 pub(super) use captured::stems;
 
@@ -107,9 +111,18 @@ pub const CASES: &[Case] = &[
     Case { name: "V4", quick: true, run: free::spinning_rod },
     Case { name: "V5", quick: false, run: loaded::cantilever },
     Case { name: "V6", quick: false, run: loaded::swing },
+    Case { name: "bending bar", quick: true, run: free::bending_bar },
     Case { name: "V7", quick: true, run: loaded::column },
     Case { name: "V8", quick: true, run: waves::bar },
     Case { name: "V11", quick: true, run: sliding::incline },
+    Case { name: "V13", quick: true, run: grains::incline },
+    Case { name: "V13 slope at rest", quick: false, run: grains::repose },
+    Case { name: "V14", quick: false, run: grains::slab },
+    Case { name: "V15", quick: false, run: grains::cylinder },
+    Case { name: "V16", quick: true, run: pulled::tension },
+    Case { name: "Bingham", quick: true, run: pulled::bingham },
+    Case { name: "V17", quick: true, run: flakes::packs },
+    Case { name: "muscle", quick: true, run: muscles::shortens },
     Case { name: "V26", quick: true, run: repeat::same_bits },
     Case { name: "left alone", quick: false, run: captured::left_alone },
     Case { name: "dropped", quick: false, run: captured::dropped },

@@ -1,0 +1,141 @@
+//! Matter that turns into something else, or gives way.
+
+use super::core::Solver;
+use super::laws::{Rows, from_rows, rows};
+use super::state::ParticleState;
+use super::substance::Substance;
+use super::types::SolverError;
+use glam::Mat3;
+
+/// Moduli after a change of material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Moduli {
+    /// Those that it had.
+    Kept,
+    /// Those that it had, times a factor over 0: weakened, or hardened.
+    Scaled(f32),
+    /// Young's modulus, Pa, and Poisson's ratio.
+    Young {
+        /// Over 0.
+        young_pa: f32,
+        /// Over -1 and under 0.5.
+        poisson: f32,
+    },
+    /// Lame's two, Pa; mu may be 0 where the law has no shear.
+    Lame {
+        /// Shear modulus.
+        mu_pa: f32,
+        /// With which lambda + 2 mu is over 0.
+        lambda_pa: f32,
+    },
+}
+
+impl Moduli {
+    /// (mu, lambda) from those before.
+    fn of(self, mu_pa: f32, lambda_pa: f32) -> (f32, f32) {
+        match self {
+            Moduli::Kept => (mu_pa, lambda_pa),
+            Moduli::Scaled(factor) => (mu_pa * factor, lambda_pa * factor),
+            Moduli::Young { young_pa: e, poisson: nu } => (e / (2.0 * (1.0 + nu)), e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))),
+            Moduli::Lame { mu_pa, lambda_pa } => (mu_pa, lambda_pa),
+        }
+    }
+}
+
+impl Solver {
+    /// Makes an object, or `only` some particles of it by their index, of another substance and with
+    /// other moduli, at the present time. Mass, places, velocities and what is seen stay; what F the new
+    /// law goes on with is for [`Substance`] to say. No substance: that which it has.
+    pub fn change_material(&mut self, object: u32, only: Option<&[u32]>, substance: Option<&Substance>, moduli: Moduli) -> Result<(), SolverError> {
+        let row = substance.map(|s| self.row_for(s)).transpose()?;
+        let mut picked = vec![only.is_none(); self.params.count as usize];
+        for &index in only.into_iter().flatten() {
+            let Some(picked) = picked.get_mut(index as usize) else {
+                return Err(SolverError::Input { what: format!("particle {index}"), expected: format!("an index under {}", self.params.count) });
+            };
+            *picked = true;
+        }
+        let mut states = self.states()?;
+        let mut unstressed: Vec<Rows> = self.gpu.read(&self.unstressed, states.len())?;
+        let mut shown = self.shown()?;
+        for (i, state) in states.iter_mut().enumerate().filter(|(i, s)| picked[*i] && s.object() == object) {
+            (state.mu_pa, state.lambda_pa) = moduli.of(state.mu_pa, state.lambda_pa);
+            let modulus = state.lambda_pa + 2.0 * state.mu_pa;
+            if !(state.mu_pa >= 0.0 && modulus > 0.0 && modulus.is_finite()) {
+                return Err(SolverError::Input {
+                    what: format!("{moduli:?}"),
+                    expected: "finite moduli over 0, nu over -1 and under 0.5".to_owned(),
+                });
+            }
+            if let Some(row) = row {
+                let before = &self.laws.substances[state.substance()];
+                let after = &self.laws.substances[usize::from(row)];
+                turn(state, before, after, &mut unstressed[i], shown.get_mut(i));
+                state.tag = object | u32::from(row) << 16;
+            }
+        }
+        self.gpu.upload(&self.unstressed, &unstressed);
+        self.set_shown(&shown);
+        self.replace(&states);
+        Ok(())
+    }
+
+    /// The row of a substance, added to the table where there is none.
+    fn row_for(&mut self, substance: &Substance) -> Result<u16, SolverError> {
+        let mut table = self.laws.substances.clone();
+        let row = table.iter().position(|s| s == substance).unwrap_or(table.len());
+        if row == table.len() {
+            table.push(substance.clone());
+            self.set_substances(&table)?;
+        }
+        u16::try_from(row).map_err(|_| SolverError::Input { what: format!("{row} substances"), expected: "at most 65536".to_owned() })
+    }
+}
+
+/// Turns a particle's matter, so that its shape as others see it stays.
+fn turn(state: &mut ParticleState, before: &Substance, after: &Substance, unstressed: &mut Rows, shown: Option<&mut Rows>) {
+    let f = state.f();
+    let seen = match (&shown, before.shown_stretch()) {
+        (Some(shown), Some(_)) => from_rows(shown),
+        _ => f * from_rows(unstressed),
+    };
+    let (next, history) = after.taken_over(before, f, state.history);
+    state.history = history;
+    state.set_f(next);
+    match (after.shown_stretch(), shown) {
+        (Some(_), Some(shown)) => *shown = rows(seen),
+        _ if before.shown_stretch().is_some() || next != f => *unstressed = rows((next.as_dmat3().inverse() * seen.as_dmat3()).as_mat3()),
+        // F0 is still that of the same F.
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_seen_stays_whatever_it_turns_into() {
+        let f = Mat3::from_rotation_z(0.4) * Mat3::from_cols_array(&[1.1, 0.02, 0.0, 0.1, 0.93, 0.05, 0.0, 0.0, 1.02]);
+        let first = Mat3::from_cols_array(&[0.99, 0.01, 0.0, 0.0, 1.02, 0.0, 0.0, 0.0, 0.98]);
+        let [elastic, _, muscle, plastic, _, viscoplastic, sand, _, snow] = crate::solver::tests::laws::all_laws().try_into().expect("nine");
+        let laws = [elastic, muscle, plastic, viscoplastic, sand, snow];
+        for before in &laws {
+            for after in &laws {
+                let mut state = ParticleState { history: before.first_history(), ..Default::default() };
+                state.set_f(f);
+                let (mut unstressed, mut shown) = (rows(first), rows(Mat3::from_rotation_x(0.1) * 0.9));
+                let seen = if before.shown_stretch().is_some() { from_rows(&shown) } else { f * first };
+                turn(&mut state, before, after, &mut unstressed, Some(&mut shown));
+                let now = if after.shown_stretch().is_some() { from_rows(&shown) } else { state.f() * from_rows(&unstressed) };
+                assert!(now.abs_diff_eq(seen, 1e-5), "{before:?} to {after:?}: {seen} became {now}");
+                // Nor does matter appear: volume with what sand and snow remember of it.
+                let volume = match after {
+                    Substance::Sand { .. } => state.f().determinant() * state.history.exp(),
+                    _ => state.f().determinant(),
+                };
+                assert!((volume / f.determinant() - 1.0).abs() < 1e-4, "{before:?} to {after:?}");
+            }
+        }
+    }
+}
