@@ -5,7 +5,6 @@ use super::laws::{Rows, from_rows, rows};
 use super::state::ParticleState;
 use super::substance::Substance;
 use super::types::SolverError;
-use glam::Mat3;
 
 /// Moduli after a change of material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,6 +112,7 @@ fn turn(state: &mut ParticleState, before: &Substance, after: &Substance, unstre
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Mat3;
 
     #[test]
     fn what_is_seen_stays_whatever_it_turns_into() {
