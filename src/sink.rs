@@ -44,6 +44,8 @@ pub trait Sink {
     fn frame(&mut self, frame: Frame);
     /// Something the user should know, one sentence.
     fn warning(&mut self, text: &str);
+    /// Something the user may like to know, one sentence.
+    fn note(&mut self, _text: &str) {}
 }
 
 /// A sink that keeps nothing.

@@ -11,6 +11,11 @@
 
 const NOTHING = 0xffffffffu;
 
+// Gradient noise of Jimenez 2014, 0 to 1: even over any small neighbourhood.
+fn grain(at: vec2<u32>) -> f32 {
+    return fract(52.9829189 * fract(dot(vec2<f32>(at), vec2<f32>(0.06711056, 0.00583715))));
+}
+
 // `depth_sum` is the sum of w z, `nearest` the Gaussian of the largest weight.
 fn finish(at: vec2<u32>, colour: vec3<f32>, transmittance: f32, depth_sum: f32, heaviest: u32) {
     if (at.x >= frame.size.x || at.y >= frame.size.y) { return; }
@@ -19,7 +24,11 @@ fn finish(at: vec2<u32>, colour: vec3<f32>, transmittance: f32, depth_sum: f32, 
     var behind = frame.background;
     if (frame.shaded == 1u) { behind *= backdrop[i]; }
     let composited = clamp(colour + transmittance * behind, vec3<f32>(0.0), vec3<f32>(1.0));
-    let bytes = vec3<u32>(floor(composited * 255.0 + 0.5));
+    // A ground that darkens slowly would show the steps of eight bits as rings: there they are broken up, each pixel
+    // rounding at a place of its own that is the same in every picture.
+    var rounding = 0.5;
+    if (frame.shaded == 1u && backdrop[i] < 1.0) { rounding = mix(0.5, grain(at), transmittance); }
+    let bytes = vec3<u32>(floor(composited * 255.0 + rounding));
     pixels[i] = bytes.x | bytes.y << 8u | bytes.z << 16u | 0xff000000u;
     if (frame.colour_at != NOTHING) {
         let to = frame.colour_at + 4u * i;

@@ -164,6 +164,11 @@ pub fn build(request: &ProxyRequest) -> Result<Solid, ProxyError> {
     Ok(Solid { stance, warnings, ..finish(&body, &samples, spacing_m, skin_m) })
 }
 
+/// How stiff the thing has to be to stand, known before a solid is made of it; nothing where its Gaussians make none.
+pub fn stance_of(gaussians: &Gaussians, ground_m: f32) -> Stance {
+    shape(gaussians, ground_m).map(|shape| young::stance(gaussians, &shape.density.grid, &shape.solid)).unwrap_or_default()
+}
+
 /// Orders the samples along a Morton curve and shares the body's volume among them.
 fn finish(body: &Body, samples: &[sample::Sample], spacing_m: f32, skin_m: f32) -> Solid {
     let positions: Vec<Vec3> = samples.iter().map(|s| s.position).collect();

@@ -316,7 +316,7 @@ fn stems_are_stiffer_than_what_they_stand_on() {
     }
     let stems = nearest(&bouquet, &feet.iter().map(|&f| f + Vec3::Z * 0.2).collect::<Vec<_>>());
     assert!(stems.iter().zip(&feet).all(|(&i, &foot)| bouquet.mean[i as usize].distance(foot + Vec3::Z * 0.2) < 0.01));
-    assert!(young.warnings.iter().any(|w| w.contains("slender")), "{:?}", young.warnings);
+    assert!(young.notes.iter().any(|n| n.contains("slender")), "{:?}", young.notes);
 }
 
 #[test]

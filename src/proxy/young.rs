@@ -43,6 +43,8 @@ pub struct YoungAuto {
     pub local: Vec<f32>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// What the user may like to know.
+    pub notes: Vec<String>,
 }
 
 /// Measures the solid that an object's Gaussians make.
@@ -71,7 +73,7 @@ pub fn young_auto(stance: &Stance, density_kg_m3: f64) -> YoungAuto {
     let value_pa = needed_pa.clamp(RANGE_PA.0, RANGE_PA.1);
     let needs: Vec<f64> = stance.local_m.iter().map(|&m| weight_n_m3 * f64::from(m)).collect();
     let local = needs.iter().map(|&need| if need > NOTABLE * value_pa { need.min(LOCAL_MOST_PA) as f32 } else { value_pa as f32 }).collect();
-    YoungAuto { value_pa, local, warnings: warnings(value_pa, needed_pa, &needs) }
+    YoungAuto { value_pa, local, warnings: warnings(value_pa, needed_pa), notes: notes(value_pa, &needs) }
 }
 
 /// Greenhill's bound of a round column of this height and cut, with the safety factor, over its weight.
@@ -89,20 +91,33 @@ fn legs_m(cut: &Cut, sections: &Sections, leg: u32) -> f64 {
     SAFETY * cut.volume_m3 / cut.area_m2 * 4.0 * sections.leg_length_m(leg).powi(2) / (PI * PI * radius_squared)
 }
 
-fn warnings(value_pa: f64, needed_pa: f64, needs: &[f64]) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if needed_pa > value_pa {
-        warnings.push(format!(
-            "young_pa = \"auto\": to stand by itself with room to spare the object would need {needed_pa:.1e} Pa and gets {value_pa:.1e} Pa, the most that is chosen unasked"
-        ));
-    }
+fn warnings(value_pa: f64, needed_pa: f64) -> Vec<String> {
+    let short = needed_pa > value_pa;
+    let text = || {
+        format!(
+            "to stand by itself with room to spare it would need a stiffness of {} and gets {}, the most that is chosen unasked",
+            pascals(needed_pa),
+            pascals(value_pa)
+        )
+    };
+    short.then(text).into_iter().collect()
+}
+
+fn notes(value_pa: f64, needs: &[f64]) -> Vec<String> {
     let stiffened = needs.iter().filter(|&&need| need > NOTABLE * value_pa).count();
-    if stiffened > 0 {
-        let most = needs.iter().copied().fold(0.0, f64::max).min(LOCAL_MOST_PA);
-        let share = 100.0 * stiffened as f64 / needs.len() as f64;
-        warnings.push(format!(
-            "young_pa = \"auto\": {value_pa:.1e} Pa, and up to {most:.1e} Pa in slender parts that need it to stand ({share:.1} % of the Gaussians)"
-        ));
-    }
-    warnings
+    let most = needs.iter().copied().fold(0.0, f64::max).min(LOCAL_MOST_PA);
+    let share = 100.0 * stiffened as f64 / needs.len().max(1) as f64;
+    let text = || {
+        format!(
+            "its automatic stiffness is {}, and up to {} in slender parts that need it to stand ({share:.1} % of the Gaussians)",
+            pascals(value_pa),
+            pascals(most)
+        )
+    };
+    (stiffened > 0).then(text).into_iter().collect()
+}
+
+/// "694 kPa"
+fn pascals(value: f64) -> String {
+    if value >= 1e6 { format!("{:.1} MPa", value / 1e6) } else { format!("{:.0} kPa", value / 1e3) }
 }

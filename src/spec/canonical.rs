@@ -32,6 +32,28 @@ impl Spec {
     }
 }
 
+impl Spec {
+    /// One part of a spec as TOML, by its path; entries of lists by name. None where there is no such part.
+    pub fn part_to_toml(&self, path: &str) -> Option<String> {
+        let mut value = &self.to_value();
+        for key in path.split('.') {
+            value = match value {
+                Value::Array(entries) => entries.iter().find(|e| e["name"] == key)?,
+                other => other.get(key)?,
+            };
+        }
+        let mut out = String::new();
+        match value {
+            Value::Object(_) => section(&mut out, &format!("[{path}]"), value),
+            Value::Array(entries) if is_section(value) => entries.iter().for_each(|entry| section(&mut out, &format!("[[{path}]]"), entry)),
+            plain => {
+                let _ = writeln!(out, "{path} = {}", inline(plain));
+            }
+        }
+        Some(out.trim().to_owned())
+    }
+}
+
 /// A whole document: numbers first, then a section for each table and each entry of a list.
 fn document(root: &Value) -> String {
     let empty = Map::new();

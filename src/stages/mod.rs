@@ -9,6 +9,7 @@ mod derive;
 mod engine;
 mod error;
 mod keys;
+mod look;
 mod metrics;
 mod pack;
 mod plan;

@@ -22,6 +22,8 @@ pub struct Player {
     pub fps: u32,
     /// The camera that the spec resolves to.
     pub camera: Camera,
+    /// Width over height of the pictures that the spec resolves to.
+    pub aspect: f64,
     store: Store,
     segments: Vec<Segment>,
     figure: Figure,
@@ -54,6 +56,7 @@ impl Engine {
             frames_total: ready.resolved.frames,
             fps: spec.time.fps,
             camera: ready.resolved.camera,
+            aspect: f64::from(ready.resolved.size[0]) / f64::from(ready.resolved.size[1].max(1)),
             store: self.store.clone(),
             segments,
             figure,

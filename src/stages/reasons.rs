@@ -47,10 +47,18 @@ pub(super) fn reason(
         Action::Hit => "in the store".to_owned(),
         Action::Skip => "no pictures asked for".to_owned(),
         Action::Run => cause,
-        Action::Resume => match from_s {
-            Some(from_s) => format!("{cause}; goes on from {from_s:.2} s"),
-            None => cause,
-        },
+        Action::Resume => {
+            let from = from_s.map(|s| format!("{s:.2} s")).unwrap_or_default();
+            // What the spec says of later times alone leaves what was before; anything else resumes where an earlier
+            // run, not the version before, began the same way.
+            let later = |path: &String| ["event", "force", "pin", "time"].iter().any(|of| matches(of, path));
+            match (changes.as_slice(), previous) {
+                ([], None) => format!("an earlier run began the same: goes on from its state at {from}"),
+                ([], Some(_)) if upstream.is_none() => format!("a run that was stopped: goes on from {from}"),
+                (changes, _) if !changes.is_empty() && changes.iter().all(later) => format!("{cause}; goes on from {from}"),
+                _ => format!("{cause}; an earlier run began the same: goes on from its state at {from}"),
+            }
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use super::segments::{self, Kept, Segment, SegmentMeta, SolverTotals};
 use super::{Action, EngineError, RunOptions, StageName, pack, summary};
 use crate::gpu::{Gpu, Readback};
 use crate::render::Picture;
-use crate::spec::Spec;
+use crate::spec::{Auto, Spec};
 use crate::store::{Store, StoreError};
 use crate::world::Figure;
 use crate::world::bodies::{Matter, matter};
@@ -19,9 +19,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// Where the spec's background is no colour, which validation refuses before.
-const BACKGROUND: [f32; 3] = [0.918, 0.918, 0.949];
+pub(super) const BACKGROUND: [f32; 3] = [0.918, 0.918, 0.949];
 /// A run that takes more than this share of the store's room keeps checkpoints alone.
 const MOTION_SHARE: f64 = 0.5;
+
+const LONG_WAY: &str = "it is predicted to go farther than the picture shows, which frames the first part of its way";
+const OUT_OF_SIGHT: &str = "it is predicted to leave the picture of the camera that was set; the automatic camera frames it";
 
 pub(super) fn run(
     engine: &mut Engine,
@@ -53,6 +56,10 @@ pub(super) fn run(
     }
     warnings.extend(engine.store.take_damage());
     warnings.iter().for_each(|w| sink.warning(w));
+    matter.notes.iter().for_each(|n| sink.note(n));
+    if options.render && ready.resolved.leaves {
+        sink.note(if spec.camera == Auto::Auto { LONG_WAY } else { OUT_OF_SIGHT });
+    }
 
     let wants_pictures = options.render;
     let pictures_kept = wants_pictures && plan.stage(StageName::Picture).is_some_and(|s| s.action == Action::Hit);
@@ -103,7 +110,7 @@ fn take_figure(engine: &mut Engine, spec: &Spec, ready: &Ready, bound: &crate::s
 }
 
 /// Delivers pictures that the store has.
-fn replay_pictures(store: &Store, ready: &Ready, sink: &mut dyn Sink) -> Result<(), EngineError> {
+pub(super) fn replay_pictures(store: &Store, ready: &Ready, sink: &mut dyn Sink) -> Result<(), EngineError> {
     let Some(entry) = pack::find(store, "picture", &ready.picture)? else { return Ok(()) };
     let bytes = entry.read("frames")?;
     let ends: Vec<usize> = entry.meta().get("ends").and_then(|v| serde_json::from_value(v.clone()).ok()).unwrap_or_default();

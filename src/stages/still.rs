@@ -11,6 +11,7 @@ use crate::store::Store;
 use crate::world::{Prepared, Resolved};
 use glam::Vec3;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -25,6 +26,8 @@ pub(super) struct Memory {
     scene: Option<(String, Made<Prepared>)>,
     solids: Option<(String, Arc<Vec<Solid>>)>,
     bound: Option<(String, Arc<Bound>)>,
+    /// Automatic stiffness of objects, by what it is made of.
+    pub young_pa: BTreeMap<String, f64>,
 }
 
 impl Memory {

@@ -2,6 +2,7 @@
 //! anything is simulated. Predicted from the spec, never read from a result.
 
 use super::ObjectFacts;
+use super::prepared::support_below;
 use crate::solver::velocity_change;
 use crate::spec::expression::{Inputs, Program};
 use crate::spec::{FieldFacts, Force, Object, Spec};
@@ -73,19 +74,18 @@ impl Drives {
     }
 }
 
-/// Follows one object through its launch, its pushes and what drives it: parabolas until it lands on the
-/// height it stood at, then a slide that friction ends.
-pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, until_s: f64) -> Path {
+/// Follows one object through its launch, its pushes and what drives it: parabolas until it lands on
+/// what is below it then, a slide that friction ends, and a fall from the edge where the slide leads over one.
+pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, ground_m: f64, until_s: f64) -> Path {
     let gravity = DVec3::from(spec.world.gravity_m_s2);
     let Some(thing) = spec.objects.get(object) else { return Path::default() };
-    let floor = facts.support_m - facts.low_m[2];
     let drives = Drives::of(spec, thing, facts);
     let mut body = Body { at: DVec3::from(thing.offset_m), velocity: DVec3::from(thing.velocity_m_s) };
     let mut events: Vec<_> = spec.events.iter().filter(|e| e.object == thing.name).collect();
     events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
     let mut path = Path { points: vec![body.at], rests_s: 0.0 };
     let mut now = 0.0;
-    let ground = Ground { floor, gravity, friction: spec.world.ground.friction };
+    let ground = Ground { spec, facts, ground_m, gravity };
     for event in events {
         travel(&mut body, now, event.at_s.min(until_s), &ground, &drives, &mut path);
         now = event.at_s;
@@ -97,19 +97,31 @@ pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, until_s: f64) ->
 }
 
 /// What it lands and slides on.
-struct Ground {
-    floor: f64,
+struct Ground<'a> {
+    spec: &'a Spec,
+    facts: &'a ObjectFacts,
+    ground_m: f64,
     gravity: DVec3,
-    friction: f64,
+}
+
+impl Ground<'_> {
+    /// The least displacement along z at a displacement: its lowest point on the ground, or on the collider that its
+    /// middle is over.
+    fn floor(&self, at: DVec3) -> f64 {
+        let [x, y, _] = self.facts.centre_m;
+        let low = self.facts.low_m[2];
+        support_below(&self.spec.colliders, self.ground_m, x + at.x, y + at.y, low + at.z) - low
+    }
 }
 
 /// Small steps are enough: the result frames a picture and rounds to whole frames.
 fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Drives, path: &mut Path) {
     let step_s = 0.01;
-    let (floor, gravity) = (ground.floor, ground.gravity);
-    let brake = ground.friction.max(LEAST_FRICTION) * (-gravity.z).max(0.0) * step_s;
+    let gravity = ground.gravity;
+    let brake = ground.spec.world.ground.friction.max(LEAST_FRICTION) * (-gravity.z).max(0.0) * step_s;
     let mut now = from_s;
     while now < to_s {
+        let floor = ground.floor(body.at);
         let change = drives.change(body, now, step_s);
         body.velocity += change;
         let lifted = change.z + gravity.z * step_s > 0.0;
@@ -142,8 +154,8 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Dri
 }
 
 /// The automatic duration: until everything has landed and settled, 2 to 8 s, in whole frames.
-pub fn duration_s(spec: &Spec, facts: &[ObjectFacts]) -> f64 {
-    let rests = facts.iter().enumerate().map(|(i, f)| predict(spec, i, f, DURATION_S.1).rests_s).fold(0.0, f64::max);
+pub fn duration_s(spec: &Spec, facts: &[ObjectFacts], ground_m: f64) -> f64 {
+    let rests = facts.iter().enumerate().map(|(i, f)| predict(spec, i, f, ground_m, DURATION_S.1).rests_s).fold(0.0, f64::max);
     let wanted = if rests > 0.0 { rests + SETTLE_S } else { 0.0 };
     let fps = f64::from(spec.time.fps);
     (wanted.clamp(DURATION_S.0, DURATION_S.1) * fps - 1e-6).ceil() / fps
@@ -181,26 +193,41 @@ mod tests {
 
     #[test]
     fn a_thing_left_alone_is_shown_for_two_seconds() {
-        assert_eq!(duration_s(&spec(), &facts()), 2.0);
+        assert_eq!(duration_s(&spec(), &facts(), 0.0), 2.0);
     }
 
     #[test]
     fn a_jump_rises_by_its_ballistic_height_and_six_times_that_on_the_moon() {
         let mut spec = spec();
         spec.objects[0].velocity_m_s = [0.0, 0.0, (2.0f64 * 9.81 * 0.3).sqrt()];
-        let apex = |spec: &Spec| predict(spec, 0, &facts()[0], 8.0).points.iter().map(|p| p.z).fold(0.0, f64::max);
+        let apex = |spec: &Spec| predict(spec, 0, &facts()[0], 0.0, 8.0).points.iter().map(|p| p.z).fold(0.0, f64::max);
         assert!((apex(&spec) - 0.3).abs() < 0.02);
-        let earth_s = duration_s(&spec, &facts());
+        let earth_s = duration_s(&spec, &facts(), 0.0);
         spec.world.gravity_m_s2 = [0.0, 0.0, -1.62];
         assert!((apex(&spec) - 0.3 * 9.81 / 1.62).abs() < 0.05);
-        assert!(duration_s(&spec, &facts()) > earth_s);
+        assert!(duration_s(&spec, &facts(), 0.0) > earth_s);
+    }
+
+    #[test]
+    fn what_slides_over_an_edge_falls_to_the_ground() {
+        use crate::spec::{BoxShape, Collider, ColliderShape};
+        let mut spec = spec();
+        let shape = ColliderShape::Box(BoxShape { centre_m: [0.0, 0.0, -0.25], size_m: [1.0, 1.0, 0.5] });
+        spec.colliders.push(Collider { name: "table".into(), shape, friction: 0.3, restitution: 0.0 });
+        let lowest = |spec: &Spec| predict(spec, 0, &facts()[0], -0.5, 4.0).points.iter().map(|p| p.z).fold(0.0, f64::min);
+        spec.objects[0].velocity_m_s = [0.0, 0.5, 0.0];
+        assert_eq!(lowest(&spec), 0.0, "it stops on the table");
+        let stays_s = duration_s(&spec, &facts(), -0.5);
+        spec.objects[0].velocity_m_s = [0.0, 2.0, 0.0];
+        assert!((lowest(&spec) + 0.5).abs() < 1e-9);
+        assert!(duration_s(&spec, &facts(), -0.5) > stays_s);
     }
 
     #[test]
     fn a_late_push_lengthens_the_film() {
         let mut spec = spec();
         spec.events.push(Event { name: "push".into(), at_s: 2.5, object: "vase".into(), push_m_s: Some([1.0, 0.0, 0.0]), velocity_m_s: None });
-        let duration = duration_s(&spec, &facts());
+        let duration = duration_s(&spec, &facts(), 0.0);
         assert!(duration > 3.0 && duration <= 8.0, "{duration}");
         assert!((duration * 50.0).fract().abs() < 1e-6);
     }

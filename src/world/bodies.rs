@@ -24,6 +24,8 @@ pub struct Matter {
     pub gaussians: Vec<usize>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// What the user may like to know.
+    pub notes: Vec<String>,
 }
 
 /// Gives each object's solid its material, one `Solid` for each object of the spec.
@@ -42,6 +44,7 @@ pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Matter {
         fill_ratio: Vec::new(),
         gaussians: Vec::new(),
         warnings: Vec::new(),
+        notes: Vec::new(),
     };
     for (index, solid) in solids.iter().enumerate() {
         add(&mut matter, spec, prepared, index, solid);
@@ -60,6 +63,7 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     let standing = object.rest == Rest::AsCaptured;
     if elastic.young_pa == Auto::Auto {
         matter.warnings.extend(auto.warnings.iter().map(|w| format!("{}: {w}", object.name)));
+        matter.notes.extend(auto.notes.iter().map(|n| format!("{}: {n}", object.name)));
     } else if standing && young_pa < auto.value_pa / 4.0 {
         matter.warnings.push(format!(
             "{}: at {young_pa:.3e} Pa its most slender part cannot carry its own weight and will sag; it stands by itself from about {:.1e} Pa",

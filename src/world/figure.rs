@@ -16,20 +16,33 @@ const POOL_SHARE: f32 = 1.6;
 pub struct Figure {
     gpu: Gpu,
     splats: Splats,
-    skinner: Skinner,
+    moved: Option<Moved>,
     shadow: Shadow,
     renderer: Renderer,
-    /// Motion of a frame that comes from the store.
-    replayed: wgpu::Buffer,
     ground_m: f32,
     pool_m: [f32; 3],
+}
+
+/// What moves the Gaussians of a figure.
+#[derive(Debug)]
+struct Moved {
+    skinner: Skinner,
+    /// Motion of a frame that comes from the store.
+    replayed: wgpu::Buffer,
 }
 
 impl Figure {
     /// Uploads a scene and binds it to particles in the captured pose.
     pub fn new(gpu: &Gpu, prepared: &Prepared, bound: &Bound, rest_m: &[Vec3], weights: Weights) -> Result<Figure, GpuError> {
+        let mut figure = Figure::captured(gpu, prepared)?;
+        let skinner = Skinner::new(gpu, &figure.splats, bound, rest_m, weights)?;
+        figure.moved = Some(Moved { skinner, replayed: gpu.storage::<[u32; 8]>("figure.replayed", rest_m.len())? });
+        Ok(figure)
+    }
+
+    /// Uploads a scene in the captured pose; nothing can move it.
+    pub fn captured(gpu: &Gpu, prepared: &Prepared) -> Result<Figure, GpuError> {
         let splats = Splats::new(gpu, &prepared.gaussians, prepared.world_from_sh, &prepared.object_of)?;
-        let skinner = Skinner::new(gpu, &splats, bound, rest_m, weights)?;
         let (mut casters, mut receivers) = (Vec::new(), Vec::new());
         for (index, (object, floater)) in (0u32..).zip(prepared.object_of.iter().zip(&prepared.floater)) {
             match (*object, *floater) {
@@ -41,10 +54,9 @@ impl Figure {
         let has_static = !receivers.is_empty();
         let shadow = Shadow::new(gpu, &splats, &casters, &receivers, Some(prepared.ground_m as f32))?;
         Ok(Figure {
-            skinner,
+            moved: None,
             shadow,
             renderer: Renderer::new(gpu),
-            replayed: gpu.storage::<[u32; 8]>("figure.replayed", rest_m.len())?,
             ground_m: prepared.ground_m as f32,
             // Static Gaussians show their own floor; a cut-out gets a tone to stand on.
             pool_m: if has_static { [0.0; 3] } else { pool(prepared) },
@@ -56,15 +68,25 @@ impl Figure {
     /// Poses by what the solver's frame pass wrote.
     pub fn pose(&mut self, motion: &wgpu::Buffer) {
         let mut recording = Recording::default();
-        self.skinner.record(motion, &mut recording);
+        if let Some(moved) = &self.moved {
+            moved.skinner.record(motion, &mut recording);
+        }
+        self.shadow.record(&mut recording);
+        self.gpu.submit(&recording);
+    }
+
+    /// Casts the shadow of the captured pose.
+    pub fn rest(&mut self) {
+        let mut recording = Recording::default();
         self.shadow.record(&mut recording);
         self.gpu.submit(&recording);
     }
 
     /// Poses by a frame of motion from the store.
     pub fn pose_from(&mut self, motion: &[u8]) {
-        self.gpu.upload(&self.replayed, motion);
-        let motion = self.replayed.clone();
+        let Some(Moved { replayed, .. }) = &self.moved else { return };
+        self.gpu.upload(replayed, motion);
+        let motion = replayed.clone();
         self.pose(&motion);
     }
 

@@ -30,18 +30,20 @@ pub struct Resolved {
     pub camera: Camera,
     /// The session's camera lost the predicted path and was left.
     pub reframed: bool,
+    /// The predicted path leaves the picture.
+    pub leaves: bool,
 }
 
 /// Fills in everything that does not need a solid.
 pub fn resolve(spec: &Spec, prepared: &Prepared, draft: bool, size: Option<[u32; 2]>, session: Option<Camera>) -> Resolved {
     let facts = prepared.object_facts(spec);
-    let duration_s = spec.time.duration_s.unwrap_or(ballistics::duration_s(spec, &facts));
+    let duration_s = spec.time.duration_s.unwrap_or(ballistics::duration_s(spec, &facts, prepared.ground_m));
     let frames = (duration_s * f64::from(spec.time.fps) + 1e-6).floor() as u32 + 1;
     let cells = spec.solver.cells_across.unwrap_or(if draft { CELLS_ACROSS_DRAFT } else { CELLS_ACROSS_FULL });
     let longest = facts.iter().flat_map(|f| (0..3).map(|i| f.high_m[i] - f.low_m[i])).fold(0.0, f64::max);
     let size = size.unwrap_or(spec.output.size.unwrap_or(if draft { SIZE_DRAFT } else { SIZE_FULL }));
     let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
-    let (camera, reframed) = camera::resolve(spec, prepared, duration_s, aspect, session);
+    let camera::Framed { camera, reframed, leaves } = camera::resolve(spec, prepared, duration_s, aspect, session);
     Resolved {
         duration_s,
         frames,
@@ -50,6 +52,7 @@ pub fn resolve(spec: &Spec, prepared: &Prepared, draft: bool, size: Option<[u32;
         size,
         camera,
         reframed,
+        leaves,
     }
 }
 
