@@ -137,7 +137,7 @@ fn bad_input_is_one_message_and_the_right_code() {
     std::fs::write(desk.path("text.ply"), b"hello").unwrap();
     std::fs::write(desk.path("file"), b"").unwrap();
     std::fs::write(desk.path("bad.toml"), b"format = 1\n[scene]\nfile = \"block.ply\"\ngravty = 1\n").unwrap();
-    let cases: [(i32, &[&str], &str); 12] = [
+    let cases: [(i32, &[&str], &str); 13] = [
         (1, &["exec", "nowhere.splat", "-p", "jump"], "nowhere.splat"),
         (1, &["exec", "folder", "-p", "jump"], "folder"),
         (1, &["exec", "empty.splat", "-p", "jump"], "empty.splat"),
@@ -150,6 +150,7 @@ fn bad_input_is_one_message_and_the_right_code() {
         (6, &["exec", "block.ply", "-p", "jump", "--device", "no such device"], "no such device"),
         (1, &["dmeo"], "did you mean `phystalk demo`"),
         (2, &["block.ply"], "needs a terminal"),
+        (1, &["nofile.splat"], "nofile.splat"),
     ];
     for (code, arguments, named) in cases {
         let output = desk.expect(code, arguments);
@@ -159,6 +160,40 @@ fn bad_input_is_one_message_and_the_right_code() {
     }
     let log = desk.run(&["log", "--json"]);
     assert!(!text(&log.stdout).contains("\"v1\""), "nothing of this made a version");
+}
+
+#[test]
+fn a_session_without_a_version_is_not_the_last_one() {
+    let desk = Desk::new();
+    desk.expect(0, &small(&["exec", "block.ply", "-p", "jump 10 cm", "--no-render"]));
+    desk.expect(1, &small(&["exec", "block.ply", "-p", ""]));
+    let log = text(&desk.expect(0, &["log"]).stdout);
+    assert!(log.contains("session s1") && log.contains("v1") && !log.contains("not run"), "{log}");
+    // By its name it is there all the same, and goes on.
+    desk.expect(0, &small(&["exec", "--session", "s2", "-p", "twice as heavy", "--no-render"]));
+    assert!(text(&desk.expect(0, &["log"]).stdout).contains("session s2"));
+    desk.expect(0, &["undo"]);
+    assert!(text(&desk.expect(0, &["log"]).stdout).contains("not run to its end"), "an undo alone runs nothing");
+}
+
+#[test]
+fn files_of_another_simulation_are_replaced_and_that_is_said() {
+    let desk = Desk::new();
+    let said = |words: &str| text(&desk.expect(0, &small(&["exec", "block.ply", "-p", words])).stderr);
+    assert!(!said("jump 10 cm").contains("replaced"));
+    assert!(!said("jump 10 cm").contains("replaced"), "the same simulation leaves the same files");
+    assert!(said("jump 20 cm").contains("held another simulation"));
+}
+
+#[test]
+fn the_automatic_stiffness_is_known_before_the_first_run() {
+    let desk = Desk::new();
+    let first = text(&desk.expect(0, &small(&["exec", "block.ply", "-p", "softer", "--no-render"])).stdout);
+    let spec = std::fs::read_to_string(desk.path("out/v1/spec.toml")).unwrap();
+    desk.expect(0, &small(&["exec", "block.ply", "-p", "jump 10 cm", "--no-render"]));
+    let metrics = json(&desk.path("out/v1/metrics.json"));
+    let automatic = metrics["resolved"]["object.block.material.young_pa"].as_f64().unwrap();
+    assert!(spec.contains(&format!("young_pa = {}", automatic / 2.0)), "{automatic}: {first}\n{spec}");
 }
 
 #[test]

@@ -8,7 +8,8 @@ use phystalk::Stop;
 use std::path::PathBuf;
 
 /// What the demo says, one turn each.
-const TURNS: [&str; 5] = ["make the vase jump up and fall back", "softer", "do it on the moon", "push it to the left at 0.5 s", "undo that"];
+const TURNS: [&str; 5] =
+    ["make the vase jump up and fall back", "softer", "do it on the moon", "back on earth, and push it to the left at 0.2 s", "undo that"];
 
 pub fn run(flags: &Flags) -> Result<(), Failure> {
     let out = flags.out.clone().unwrap_or_else(|| PathBuf::from("phystalk-demo"));
@@ -25,12 +26,13 @@ pub fn run(flags: &Flags) -> Result<(), Failure> {
     let code = exec::turns(&mut conversation, Vec::new(), &turns, &mut teller, &stop);
     if code == 0 && !flags.quiet {
         let folder = out.display();
+        let program = super::environment::program();
         teller.tell(format!(
             "\nThe pictures are in {folder}: look at {folder}/v1/contact.png, or open {folder}/v1/preview.webp in a browser.\n\
              Three things to try next:\n\
-             \x20 phystalk builtin:demo                               talk to this scene yourself\n\
-             \x20 phystalk exec YOUR.splat -p \"drop it from 1 m\"      your own capture (.ply or .splat)\n\
-             \x20 phystalk diff v1 v2                                 what \"softer\" changed"
+             \x20 {program} builtin:demo\n      talk to this scene yourself\n\
+             \x20 {program} exec YOUR.splat -p \"drop it from 1 m\"\n      your own capture (.ply or .splat)\n\
+             \x20 {program} diff v1 v2\n      what \"softer\" changed"
         ));
     }
     if teller.broken { Err(Failure::silent(Kind::Pipe)) } else { Failure::from_code(code) }

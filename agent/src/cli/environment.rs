@@ -11,6 +11,12 @@ pub fn prepare() {
     unix::prepare();
 }
 
+/// The program as it was called, to be shown in commands to type.
+pub fn program() -> String {
+    let called = std::env::args_os().next().map(|name| name.to_string_lossy().into_owned());
+    called.filter(|name| !name.is_empty()).unwrap_or_else(|| "phystalk".to_owned())
+}
+
 #[cfg(unix)]
 mod unix {
     use std::os::unix::fs::MetadataExt;

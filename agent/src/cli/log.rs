@@ -24,7 +24,8 @@ pub fn text(session: &Session) -> String {
         let here = if Some(v.name.as_str()) == head { "*" } else { " " };
         let from = v.parent.as_ref().map(|p| format!("<- {p}")).unwrap_or_default();
         let what = if v.note.is_empty() { v.words.clone() } else { format!("{} ({})", v.words, v.note) };
-        vec![format!("{here} {}", v.name), from, what]
+        let run = if v.resolved.is_none() { "(not run to its end)".to_owned() } else { String::new() };
+        vec![format!("{here} {}", v.name), from, what, run]
     };
     let rows: Vec<Vec<String>> = session.versions().iter().map(row).collect();
     let title = format!("session {}: {}", session.name(), session.base().scene.file);

@@ -33,6 +33,9 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
         let hint = meant.map(|m| format!("; did you mean `phystalk {m}`?")).unwrap_or_default();
         return Err(Failure::other(format!("{scene} is neither a file nor a command{hint}")));
     }
+    if let Some(scene) = scene.filter(|s| *s != phystalk::stages::BUILTIN_DEMO) {
+        std::fs::metadata(scene).map_err(|e| Failure::file("read", Path::new(scene), &e))?;
+    }
     if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
         return Err(Failure::new(
             Kind::Usage,

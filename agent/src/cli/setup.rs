@@ -69,7 +69,7 @@ pub fn session(flags: &Flags, store: &Store) -> Result<Session, Failure> {
 /// whose scene was read first, so that a wrong path leaves nothing behind.
 pub fn converse(scene: Option<&str>, flags: &Flags, out: impl Fn(&str) -> Option<PathBuf>) -> Result<Conversation, Failure> {
     let store = store(flags)?;
-    let known = flags.session.as_ref().is_some_and(|name| Session::list(&store).is_ok_and(|names| names.contains(name)));
+    let known = flags.session.as_ref().is_some_and(|name| Session::exists(&store, name).is_ok_and(|known| known));
     let mut engine = engine(flags, store.clone());
     let session = match scene {
         _ if flags.resume || known => resumed(scene, flags, &store)?,

@@ -4,7 +4,7 @@ use super::exit::{Failure, Kind};
 use super::flags::Flags;
 use super::setup;
 use clap::Args;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 #[derive(Args, Debug)]
 pub struct Arguments {
@@ -44,7 +44,7 @@ fn open(_: &Arguments, _: &Flags) -> Result<(), Failure> {
 }
 
 /// What opens the window beside this process, on the same store and session.
-pub fn opener(flags: &Flags, session: &str) -> Box<dyn Fn() -> Result<(), Failure>> {
+pub fn opener(flags: &Flags, session: &str) -> Box<dyn Fn() -> Result<Child, Failure>> {
     let (flags, session) = (flags.clone(), session.to_owned());
     Box::new(move || {
         check_display()?;
@@ -63,8 +63,7 @@ pub fn opener(flags: &Flags, session: &str) -> Box<dyn Fn() -> Result<(), Failur
         if let Some(quality) = flags.quality {
             command.args(["--quality", quality.as_str()]);
         }
-        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
-        Ok(())
+        Ok(command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?)
     })
 }
 

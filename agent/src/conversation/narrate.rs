@@ -1,6 +1,7 @@
 //! What happened, in words: plans, durations, what a run showed.
 
 use phystalk::stages::{Action, Metrics, ObjectMetrics, PlannedStage};
+use phystalk::world::Facts;
 
 /// Seconds as people say them.
 pub fn duration(seconds: f64) -> String {
@@ -43,6 +44,15 @@ pub fn plan_table(stages: &[PlannedStage]) -> Vec<Vec<String>> {
     stages.iter().map(row).collect()
 }
 
+/// The objects of a scene by name, with their sizes, one sentence each.
+pub fn scene(facts: &Facts) -> Vec<String> {
+    let sentence = |object: &phystalk::world::ObjectFacts| {
+        let [x, y, z] = [0, 1, 2].map(|axis| object.high_m[axis] - object.low_m[axis]);
+        format!("{}: {} high, {} by {}, {} Gaussians", object.name, length(z), length(x), length(y), object.gaussians)
+    };
+    facts.objects.iter().map(sentence).collect()
+}
+
 /// What the objects did, one sentence each.
 pub fn outcome(metrics: &Metrics) -> Vec<String> {
     metrics.objects.iter().map(|(name, object)| sentence(name, object, metrics)).collect()
@@ -56,12 +66,7 @@ fn sentence(name: &str, object: &ObjectMetrics, metrics: &Metrics) -> String {
     let mut parts = Vec::new();
     let (apex, travel) = (object.apex_m(), object.travel_m());
     let aside = travel[0].hypot(travel[1]);
-    if apex > 0.01 * height {
-        parts.push(format!("rises {}", length(apex)));
-    }
-    if object.drop_m() > 0.01 * height {
-        parts.push(format!("falls {}", length(object.drop_m())));
-    }
+    parts.extend(up_and_down(apex, object.drop_m(), height));
     if aside > 0.01 * height {
         parts.push(format!("ends {} away", length(aside)));
     }
@@ -80,6 +85,18 @@ fn sentence(name: &str, object: &ObjectMetrics, metrics: &Metrics) -> String {
     format!("{name}: {}", parts.join(", "))
 }
 
+/// How the middle went up and down. What falls about as far as it rose came down again: it sags a little as it lands.
+fn up_and_down(apex_m: f64, drop_m: f64, height_m: f64) -> Option<String> {
+    let (rises, falls) = (apex_m > 0.01 * height_m, drop_m > 0.01 * height_m);
+    match (rises, falls) {
+        (true, true) if (drop_m - apex_m).abs() <= 0.25 * apex_m => Some(format!("rises {} and comes down again", length(apex_m))),
+        (true, true) => Some(format!("rises {}, falls {}", length(apex_m), length(drop_m))),
+        (true, false) => Some(format!("rises {}", length(apex_m))),
+        (false, true) => Some(format!("falls {}", length(drop_m))),
+        (false, false) => None,
+    }
+}
+
 fn length(metres: f64) -> String {
     if metres < 0.995 { format!("{:.0} cm", metres * 100.0) } else { format!("{metres:.2} m") }
 }
@@ -93,6 +110,14 @@ mod tests {
     fn durations() {
         let said: Vec<String> = [0.004, 0.5, 2.34, 61.0, 125.0].into_iter().map(duration).collect();
         assert_eq!(said, ["4 ms", "0.5 s", "2.3 s", "61 s", "2:05 min"]);
+    }
+
+    #[test]
+    fn a_jump_comes_down_again_and_a_fall_is_a_fall() {
+        assert_eq!(up_and_down(0.24, 0.27, 1.0).as_deref(), Some("rises 24 cm and comes down again"));
+        assert_eq!(up_and_down(0.24, 1.2, 1.0).as_deref(), Some("rises 24 cm, falls 1.20 m"));
+        assert_eq!(up_and_down(0.0, 0.5, 1.0).as_deref(), Some("falls 50 cm"));
+        assert_eq!(up_and_down(0.001, 0.001, 1.0), None);
     }
 
     fn stage(stage: StageName, action: Action, from_s: Option<f64>, reason: &str) -> PlannedStage {

@@ -75,6 +75,12 @@ impl Sink for Observer<'_> {
         self.report_written();
     }
 
+    fn note(&mut self, text: &str) {
+        if self.warned.insert(text.to_owned()) {
+            self.listener.event(Event::Message { text: text.to_owned() });
+        }
+    }
+
     fn warning(&mut self, text: &str) {
         if self.warned.insert(text.to_owned()) {
             self.listener.event(Event::Warning { text: text.to_owned() });

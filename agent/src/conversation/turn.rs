@@ -20,8 +20,6 @@ pub struct Conversation {
     options: RunOptions,
     /// Where files go; none where pictures are only looked at.
     out: Option<PathBuf>,
-    /// What `"auto"` came to in the newest run.
-    resolved: serde_json::Map<String, serde_json::Value>,
     turns: u32,
     asked_for_cpu: bool,
     said_device: bool,
@@ -40,9 +38,8 @@ pub struct Outcome {
 impl Conversation {
     /// Goes on with a session.
     pub fn new(engine: Engine, session: Session, options: RunOptions, out: Option<PathBuf>, asked_for_cpu: bool) -> Conversation {
-        let resolved = session.head().and_then(|v| v.resolved.as_ref()?.as_object().cloned()).unwrap_or_default();
         let options = RunOptions { camera: session.camera(), ..options };
-        Conversation { engine, session, options, out, resolved, turns: 0, asked_for_cpu, said_device: false, warned: BTreeSet::new() }
+        Conversation { engine, session, options, out, turns: 0, asked_for_cpu, said_device: false, warned: BTreeSet::new() }
     }
 
     /// Its session.
@@ -114,6 +111,24 @@ impl Conversation {
         end(result, listener)
     }
 
+    /// Shows what there is before anything is said: the newest version's pictures, or the scene as captured. Nothing runs.
+    pub fn show(&mut self, listener: &mut dyn Listener, stop: &Stop) -> Result<(), Failure> {
+        listener.film(&self.head_name().unwrap_or_else(|| "as captured".to_owned()));
+        let spec = self.session.spec().clone();
+        Ok(self.engine.look(&spec, Path::new(""), &self.options, &mut Watcher(listener), stop)?)
+    }
+
+    /// What the scene holds and where the conversation stands, in sentences.
+    pub fn introduce(&mut self) -> Result<Vec<String>, Failure> {
+        let facts = self.engine.facts(&self.session.spec().clone(), Path::new(""), &self.options)?;
+        let mut said = narrate::scene(&facts);
+        if let Some(head) = self.session.head() {
+            let words = if head.note.is_empty() { &head.words } else { &head.note };
+            said.push(format!("session {} goes on after {}: {words}", self.session.name(), head.name));
+        }
+        Ok(said)
+    }
+
     /// What would run now.
     pub fn plan(&mut self) -> Result<Plan, Failure> {
         Ok(self.engine.plan(&self.session.spec().clone(), Path::new(""), &self.options, None)?)
@@ -157,8 +172,9 @@ impl Conversation {
     fn understand_and_run(&mut self, words: &str, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
         let spec = self.session.spec().clone();
         let facts = self.engine.facts(&spec, Path::new(""), &self.options)?;
+        let resolved = self.engine.automatic(&spec, Path::new(""), &self.options)?;
         let previous = self.before_head();
-        let context = language::Context { spec: &spec, facts: &facts, resolved: &self.resolved, previous_spec: previous.as_ref() };
+        let context = language::Context { spec: &spec, facts: &facts, resolved: &resolved, previous_spec: previous.as_ref() };
         let reply = language::understand(words, &context);
         listener.event(Event::Usage { provider: "phrasebook".to_owned(), input_tokens: 0, output_tokens: 0 });
         let from = self.head_name();
@@ -234,7 +250,15 @@ impl Conversation {
         self.say_device(listener)?;
         listener.event(Event::PlanReady { stages: plan.stages.clone() });
         let mut files = match &self.out {
-            Some(out) => Some(Files::create(&out.join(&version.name), spec.time.fps)?),
+            Some(out) => {
+                let folder = out.join(&version.name);
+                // As a compiler does, files of an earlier run are replaced; those of another simulation are worth a word.
+                if Spec::read(&folder.join("spec.toml")).is_ok_and(|held| held.hash() != spec.hash()) {
+                    let text = format!("{} held another simulation: its files are replaced; --out names another folder", folder.display());
+                    listener.event(Event::Warning { text });
+                }
+                Some(Files::create(&folder, spec.time.fps)?)
+            }
             None => None,
         };
         if let Some(files) = &files {
@@ -265,11 +289,11 @@ impl Conversation {
             });
         }
         self.keep_camera(&report)?;
-        self.resolved.clone_from(&report.metrics.resolved);
-        self.session.keep_resolved(&version.name, serde_json::Value::Object(self.resolved.clone()))?;
         if report.stopped {
             return Ok(Ended::Cancelled(version.name.clone()));
         }
+        // Kept of a version that ran to its end: that is how the others are told.
+        self.session.keep_resolved(&version.name, serde_json::Value::Object(report.metrics.resolved.clone()))?;
         narrate::outcome(&report.metrics).into_iter().for_each(|text| listener.event(Event::Message { text }));
         judge(&report.metrics, &version.name)
     }
@@ -369,6 +393,17 @@ fn as_refusal(failure: Failure) -> Failure {
         Kind::Spec => Failure::other(failure.message),
         _ => failure,
     }
+}
+
+/// Passes pictures on.
+struct Watcher<'a>(&'a mut dyn Listener);
+
+impl phystalk::Sink for Watcher<'_> {
+    fn progress(&mut self, _: phystalk::Progress) {}
+    fn frame(&mut self, frame: phystalk::Frame) {
+        self.0.picture(&frame);
+    }
+    fn warning(&mut self, _: &str) {}
 }
 
 /// Keeps one frame of a run.

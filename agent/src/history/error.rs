@@ -56,7 +56,10 @@ pub enum HistoryError {
 }
 
 fn no_session(name: Option<&str>, known: &[String]) -> String {
-    match (name, known) {
+    // By name, s2 before s10.
+    let mut known = known.to_vec();
+    known.sort_by_key(|name| (name.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned(), name.len(), name.clone()));
+    match (name, known.as_slice()) {
         (_, []) => "there is no session yet: start one with phystalk exec SCENE -p TEXT".to_owned(),
         (Some(name), known) => format!("no session `{name}`: there are {}", known.join(", ")),
         (None, known) => format!("no last session; there are {}", known.join(", ")),

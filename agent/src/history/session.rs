@@ -28,7 +28,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// Starts a session with a scene as found; without a name it gets the next free number: `s1`, `s2`, …
+    /// Starts a session with a scene as found. It counts as used from its first version on. Without a name it gets the next free number: `s1`, `s2`, …
     pub fn start(store: &Store, name: Option<&str>, base: Spec) -> Result<Session, HistoryError> {
         let base = base.absolute_from(Path::new(""))?;
         let guard = store.lock()?;
@@ -38,8 +38,8 @@ impl Session {
             Some(name) => name.to_owned(),
             None => free_name(&guard)?,
         };
+        // Listed with its first version: a session in which nothing was said is nobody's last one.
         guard.append(&file(&name), &Operation::Start { time_s: now_s(), base: Box::new(base) })?;
-        note_use(&guard, &name)?;
         drop(guard);
         Session::open(store, Some(&name))
     }
@@ -60,7 +60,13 @@ impl Session {
         Ok(Session { store: store.clone(), name, timeline, seen, head, torn })
     }
 
-    /// All sessions in the order of use, the last one last.
+    /// Whether there is a session of this name, even one without a version.
+    pub fn exists(store: &Store, name: &str) -> Result<bool, HistoryError> {
+        Ok(is_name(name) && operations(&store.lock()?, name)?.0.is_some())
+    }
+
+    /// All sessions that have a version, in the order of use, the last one last.
+    #[cfg(test)]
     pub fn list(store: &Store) -> Result<Vec<String>, HistoryError> {
         Ok(sessions(&store.lock()?)?)
     }
@@ -240,7 +246,7 @@ fn note_use(guard: &Guard, session: &str) -> Result<(), StoreError> {
     guard.append(SESSIONS, &Use { session: session.to_owned() })
 }
 
-/// The first number that no session has, nor one that a crash left unlisted.
+/// The first number that no session has, listed or not.
 fn free_name(guard: &Guard) -> Result<String, StoreError> {
     let mut number = sessions(guard)?.len() + 1;
     loop {

@@ -69,10 +69,10 @@ fn undo_makes_versions_and_walks_further_back() {
     assert_eq!(back.edits, [Edit::set("seed", 3)]);
     assert_eq!(session.undo("undo", 1).unwrap().note, "back to v1");
     assert_eq!(session.redo("redo", 1).unwrap().note, "forward to v2");
-    assert_eq!(session.redo("redo", 9).unwrap().note, "forward to v3");
+    assert_eq!(session.redo("redo", 9).unwrap().note, "forward to v3, all that there is: 1 of 9 steps");
     assert!(matches!(session.redo("redo", 1), Err(HistoryError::NothingToRedo { .. })));
     assert_eq!(session.undo("undo", 2).unwrap().note, "back to v1");
-    assert_eq!(session.undo("undo", 9).unwrap().note, "back to the start");
+    assert_eq!(session.undo("undo", 9).unwrap().note, "back to the start, all that there is: 1 of 9 steps");
     assert_eq!(session.spec(), session.base());
     assert!(matches!(session.undo("undo", 1), Err(HistoryError::NothingToUndo { .. })));
     assert_eq!(seeds(&session), [2, 3, 4, 3, 2, 3, 4, 2, 1]);
@@ -107,7 +107,7 @@ fn a_spec_that_was_taken_over_has_nothing_before_it() {
     session.commit("run a.toml", &[], &base).unwrap();
     assert!(matches!(session.undo("undo", 1), Err(HistoryError::NothingToUndo { .. })));
     turn(&mut session, 5);
-    assert_eq!(session.undo("undo", 5).unwrap().note, "back to v1");
+    assert_eq!(session.undo("undo", 5).unwrap().note, "back to v1, all that there is: 1 of 5 steps");
 }
 
 #[test]
@@ -115,8 +115,12 @@ fn sessions_are_found_in_the_order_of_use() {
     let (_home, store) = store();
     assert!(matches!(Session::open(&store, None), Err(HistoryError::NoSuchSession { .. })));
     let mut first = session(&store);
-    session(&store);
-    let named = Session::start(&store, Some("vases"), Spec::of_scene("builtin:demo")).unwrap();
+    turn(&mut first, 1);
+    turn(&mut session(&store), 1);
+    let mut named = Session::start(&store, Some("vases"), Spec::of_scene("builtin:demo")).unwrap();
+    assert_eq!(Session::open(&store, None).unwrap().name(), "s2", "nothing was said in the newest one");
+    assert!(Session::exists(&store, "vases").unwrap() && !Session::exists(&store, "s9").unwrap());
+    turn(&mut named, 1);
     assert_eq!(Session::list(&store).unwrap(), ["s1", "s2", "vases"]);
     assert_eq!(Session::open(&store, None).unwrap().name(), named.name());
     turn(&mut first, 2);
@@ -160,7 +164,7 @@ fn the_scene_is_found_from_anywhere_and_the_camera_is_kept() {
     assert_eq!(session.camera(), None);
     let camera = phystalk::spec::Camera { eye_m: [1.0, 2.0, 0.1 + 0.2], target_m: [0.0; 3], fov_deg: 45.0, orbit_deg_s: 0.0 };
     session.keep_camera(&camera).unwrap();
-    assert_eq!(Session::open(&store, None).unwrap().camera(), Some(camera));
+    assert_eq!(Session::open(&store, Some("s1")).unwrap().camera(), Some(camera));
 }
 
 #[test]
@@ -250,7 +254,7 @@ proptest! {
             session.redo("redo", 1).unwrap();
         }
         prop_assert_eq!(session.spec(), &spec);
-        let later = Session::open(&store, None).unwrap();
+        let later = Session::open(&store, Some(session.name())).unwrap();
         prop_assert_eq!(later.versions(), session.versions());
         prop_assert_eq!(later.spec(), session.spec());
     }

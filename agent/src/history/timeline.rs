@@ -110,20 +110,26 @@ impl Timeline {
             }
             How::Undo(steps) => {
                 let mut at = self.stands_for();
-                for _ in 0..steps {
-                    let Some(before) = self.before(at) else { break };
+                let mut taken = 0;
+                while taken < steps
+                    && let Some(before) = self.before(at)
+                {
                     self.undone.push(at);
                     at = before;
+                    taken += 1;
                 }
-                (at, format!("back to {}", place(at)))
+                (at, format!("back to {}{}", place(at), fewer(taken, steps)))
             }
             How::Redo(steps) => {
                 let mut at = self.stands_for();
-                for _ in 0..steps {
-                    let Some(after) = self.undone.pop() else { break };
+                let mut taken = 0;
+                while taken < steps
+                    && let Some(after) = self.undone.pop()
+                {
                     at = after;
+                    taken += 1;
                 }
-                (at, format!("forward to {}", place(at)))
+                (at, format!("forward to {}{}", place(at), fewer(taken, steps)))
             }
         }
     }
@@ -182,6 +188,11 @@ impl Timeline {
 /// `v3`.
 pub(super) fn name(number: u32) -> String {
     format!("v{number}")
+}
+
+/// Says that a walk ended before its last step.
+fn fewer(taken: u32, asked: u32) -> String {
+    if taken < asked { format!(", all that there is: {taken} of {asked} steps") } else { String::new() }
 }
 
 fn place(number: Option<u32>) -> String {

@@ -74,7 +74,7 @@ pub struct Context<'a> {
     pub spec: &'a Spec,
     /// The scene in numbers.
     pub facts: &'a Facts,
-    /// What `"auto"` came to in the newest run, by path; empty before the first run.
+    /// What `"auto"` comes to in the present spec, by path.
     pub resolved: &'a serde_json::Map<String, serde_json::Value>,
     /// The spec that the newest turn's edits were made on: "no, the other way", "again", "undo that and …".
     pub previous_spec: Option<&'a Spec>,

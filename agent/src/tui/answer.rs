@@ -11,22 +11,12 @@ pub fn answer(question: &Question, store: &Store, session: &str) -> Result<Strin
     match question {
         Question::Log => Ok(crate::cli::log::text(&session)),
         Question::Spec(None) => Ok(session.spec().to_toml().trim_end().to_owned()),
-        Question::Spec(Some(path)) => part(&session.spec().to_value(), path),
+        Question::Spec(Some(path)) => {
+            let part = session.spec().part_to_toml(path);
+            part.ok_or_else(|| Failure::other(format!("there is no {path} in the spec; /spec shows all of it")))
+        }
         Question::Diff(a, b) => diff(&session, a.as_deref(), b.as_deref()),
     }
-}
-
-/// One value of a spec, by its path; entries of lists by name.
-fn part(spec: &serde_json::Value, path: &str) -> Result<String, Failure> {
-    let mut value = spec;
-    for key in path.split('.') {
-        let next = match value {
-            serde_json::Value::Array(entries) => entries.iter().find(|e| e["name"] == key),
-            other => other.get(key),
-        };
-        value = next.ok_or_else(|| Failure::other(format!("there is no {path} in the spec; /spec shows all of it")))?;
-    }
-    serde_json::to_string_pretty(value).map_err(Failure::other)
 }
 
 /// Two versions; one against the newest; or the newest against the one before it.

@@ -9,14 +9,13 @@ use super::transcript::{Transcript, Voice};
 use crate::conversation::Event;
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::collections::VecDeque;
-use std::time::{Duration, Instant};
-
-/// Within this time a second Ctrl+C leaves.
-const TWICE: Duration = Duration::from_secs(1);
+use std::time::Instant;
 
 /// What the engine's thread is asked to do.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
+    /// Show what there is before anything is said.
+    Open,
     /// A turn in words.
     Say(String),
     /// A turn of `PATH=VALUE` edits.
@@ -117,7 +116,8 @@ pub struct App {
     /// Words not understood, held back until it is known whether the failure repeats them.
     words: Vec<String>,
     queue: VecDeque<String>,
-    last_interrupt: Option<Instant>,
+    /// Ctrl+C was the last key: once more leaves.
+    interrupted: bool,
 }
 
 impl App {
@@ -135,7 +135,7 @@ impl App {
             preview_shown: None,
             words: Vec::new(),
             queue: VecDeque::new(),
-            last_interrupt: None,
+            interrupted: false,
         }
     }
 
@@ -149,17 +149,18 @@ impl App {
         if key.kind == KeyEventKind::Release {
             return Vec::new();
         }
+        let interrupted = std::mem::take(&mut self.interrupted);
         let control = key.modifiers.contains(KeyModifiers::CONTROL);
         let alt = key.modifiers.contains(KeyModifiers::ALT);
         match key.code {
-            KeyCode::Char('c') if control => return self.interrupt(now),
+            KeyCode::Char('c') if control => return self.interrupt(interrupted),
             KeyCode::Char('d') if control && self.composer.is_empty() => return vec![Effect::Quit],
             KeyCode::Char('l') if control => return vec![Effect::Redraw],
             KeyCode::Esc => return self.stop(),
             KeyCode::PageUp => self.transcript.scroll_pages(1),
             KeyCode::PageDown => self.transcript.scroll_pages(-1),
             KeyCode::Tab => self.complete(),
-            KeyCode::Char('p') if alt => self.pane.toggle(now),
+            KeyCode::Char('p') if alt => self.play(now),
             KeyCode::Char(',') if alt => self.pane.step(-1),
             KeyCode::Char('.') if alt => self.pane.step(1),
             KeyCode::Char('3') if alt => self.preview_shown = Some(self.preview_shown == Some(false)),
@@ -194,12 +195,24 @@ impl App {
         }
     }
 
-    /// Ctrl+C: stops a run, clears a line, and leaves when pressed twice.
-    fn interrupt(&mut self, now: Instant) -> Vec<Effect> {
-        let twice = self.last_interrupt.replace(now).is_some_and(|before| now.duration_since(before) < TWICE);
-        if twice {
+    /// Shows the scene, or what the last version came to.
+    pub fn open(&mut self) -> Vec<Effect> {
+        self.begin(Request::Open)
+    }
+
+    /// Plays or pauses, and says where there is nothing that could play.
+    fn play(&mut self, now: Instant) {
+        if !self.pane.toggle(now) {
+            self.transcript.add(Voice::Error, "nothing moves yet: say what should happen first");
+        }
+    }
+
+    /// Ctrl+C: stops a run, clears a line, and leaves when pressed again with no other key between.
+    fn interrupt(&mut self, again: bool) -> Vec<Effect> {
+        if again {
             return vec![Effect::Stop, Effect::Quit];
         }
+        self.interrupted = true;
         if self.running.is_some() {
             return self.stop();
         }
@@ -234,7 +247,8 @@ impl App {
     }
 
     fn begin(&mut self, request: Request) -> Vec<Effect> {
-        self.running = Some(Running { stage: "understand".to_owned(), ..Running::default() });
+        let stage = if request == Request::Open { "opening" } else { "understand" };
+        self.running = Some(Running { stage: stage.to_owned(), ..Running::default() });
         vec![Effect::Send(request)]
     }
 
@@ -257,7 +271,7 @@ impl App {
             Action::Log => vec![Effect::Ask(Question::Log)],
             Action::Diff => vec![Effect::Ask(Question::Diff(words.first().map(|w| (*w).to_owned()), words.get(1).map(|w| (*w).to_owned())))],
             Action::Play => {
-                self.pane.toggle(now);
+                self.play(now);
                 Vec::new()
             }
             Action::Frame => match rest.parse() {

@@ -115,8 +115,23 @@ fn commands_become_what_they_say() {
 }
 
 #[test]
+fn it_opens_with_a_picture_and_what_is_typed_waits_for_it() {
+    let reel = Reel::default();
+    let mut app = app_with(&reel);
+    assert_eq!(app.open(), [Effect::Send(Request::Open)]);
+    assert_eq!(typed(&mut app, "jump<enter>"), []);
+    reel.start("as captured");
+    let pixels = (0..32 * 18).flat_map(|i: u32| [(i % 32 * 8) as u8, (i / 32 * 14) as u8, 90, 255]).collect::<Vec<u8>>();
+    reel.add(&Frame { index: 0, time_s: 0.0, size: [32, 18], rgba8: pixels.into(), png: Vec::new().into(), depth: None, id: None });
+    app.update(Update::Pictures, Instant::now());
+    let drawn = screen(&mut app, 80, 24).backend().to_string();
+    assert!(drawn.contains("as captured") && drawn.contains('▄') && drawn.contains("opening"), "{drawn}");
+    assert_eq!(app.update(Update::Finished, Instant::now()), [Effect::Send(Request::Say("jump".into()))]);
+}
+
+#[test]
 fn what_makes_no_sense_does_nothing_and_says_why() {
-    for keys in ["/udno<enter>", "/undo many<enter>", "/frame x<enter>", "/frame 7<enter>", "/snap<enter>", "/set<enter>"] {
+    for keys in ["/udno<enter>", "/undo many<enter>", "/frame x<enter>", "/frame 7<enter>", "/play<enter>", "/snap<enter>", "/set<enter>"] {
         let mut app = app_with(&Reel::default());
         assert_eq!(typed(&mut app, keys), [], "{keys}");
         assert!(screen(&mut app, 80, 24).backend().to_string().contains("x "), "{keys}");
@@ -152,7 +167,9 @@ fn control_c_stops_clears_and_leaves() {
     let mut app = app_with(&Reel::default());
     typed(&mut app, "half a thou<c-c>");
     assert!(app.composer.is_empty());
-    assert_eq!(typed(&mut app, "<c-c>"), [Effect::Stop, Effect::Quit]);
+    assert_eq!(typed(&mut app, "<c-c>"), [Effect::Stop, Effect::Quit], "however slowly");
+    let mut app = app_with(&Reel::default());
+    assert_eq!(typed(&mut app, "<c-c>x<c-c>"), [], "another key in between, and it is not meant");
     assert_eq!(typed(&mut app_with(&Reel::default()), "<c-d>"), [Effect::Quit]);
     assert_eq!(typed(&mut busy(&Reel::default()), "<c-c>"), [Effect::Stop]);
 }

@@ -2,6 +2,7 @@
 //! that it lies above it, and under 24 rows it is folded away unless asked for.
 
 use super::app::App;
+use super::pane::Play;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::{Line, Span};
@@ -73,7 +74,15 @@ fn preview(app: &mut App, frame: &mut Frame<'_>, area: Rect) {
         frame.render_widget(Image::new(protocol), place);
     }
     if let Some(c) = app.pane.caption() {
-        let text = format!("{} {:>3}/{} {:.2} s{}", c.version, c.frame, c.last, c.time_s, if c.playing { " playing" } else { "" });
+        let state = match c.play {
+            Play::Playing => " playing",
+            Play::Paused => " paused · Alt+P plays",
+            Play::Still | Play::Following => "",
+        };
+        let text = match c.play {
+            Play::Still => c.version,
+            _ => format!("{} {:>3}/{} {:.2} s{state}", c.version, c.frame, c.last, c.time_s),
+        };
         frame.render_widget(Paragraph::new(Line::styled(text, app.theme.dim)).centered(), caption);
     }
 }

@@ -22,6 +22,7 @@ use crossterm::event::Event as Input;
 use pane::Pane;
 use phystalk::Stop;
 use phystalk::store::Store;
+use std::process::Child;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -50,7 +51,7 @@ pub struct Options {
     /// The first thing said, if any.
     pub prompt: Option<String>,
     /// Opens the window beside the REPL.
-    pub window: Box<dyn Fn() -> Result<(), Failure>>,
+    pub window: Box<dyn Fn() -> Result<Child, Failure>>,
 }
 
 /// Runs the REPL until the user leaves.
@@ -63,8 +64,7 @@ pub fn run(conversation: Conversation, store: &Store, options: Options) -> Resul
     let reel = Reel::default();
     let mut app = App::new(&session, Pane::new(reel.clone(), painter), Theme::from_environment());
     app.version = conversation.session().head().map(|v| v.name.clone()).unwrap_or_default();
-    app.transcript.add(Voice::Agent, format!("{scene}: say what should happen, as \"make it jump\" or \"drop it from 1 m\""));
-    app.transcript.add(Voice::Detail, "words are understood by the phrasebook, offline; /help lists commands and keys");
+    app.transcript.add(Voice::Agent, &scene);
 
     let (post, inbox) = channel();
     let brake: worker::Brake = Arc::new(Mutex::new(Stop::default()));
@@ -75,9 +75,10 @@ pub fn run(conversation: Conversation, store: &Store, options: Options) -> Resul
         std::thread::Builder::new().name("engine".into()).spawn(serve)?
     };
     read_keys(post)?;
-    let desk = Desk { ask, brake, store: store.clone(), session, window: options.window };
-    let first = options.prompt.map(|p| app.enter(p, Instant::now())).unwrap_or_default();
-    let result = attend(&mut app, &mut screen, &inbox, &desk, first);
+    let mut desk = Desk { ask, brake, store: store.clone(), session, window: Window { open: options.window, child: None } };
+    let mut first = app.open();
+    first.extend(options.prompt.map(|p| app.enter(p, Instant::now())).unwrap_or_default());
+    let result = attend(&mut app, &mut screen, &inbox, &mut desk, first);
     drop(screen);
     // The engine ends at its next batch: the stop flag is up, and there is nobody left to ask. It is
     // not waited for long: what it keeps appears whole or not at all.
@@ -109,7 +110,7 @@ struct Desk {
     brake: worker::Brake,
     store: Store,
     session: String,
-    window: Box<dyn Fn() -> Result<(), Failure>>,
+    window: Window,
 }
 
 impl Desk {
@@ -120,8 +121,34 @@ impl Desk {
     }
 }
 
+/// The window beside the REPL, a process of its own that ends with it.
+struct Window {
+    open: Box<dyn Fn() -> Result<Child, Failure>>,
+    child: Option<Child>,
+}
+
+impl Window {
+    fn show(&mut self) -> Result<&'static str, Failure> {
+        if self.child.as_mut().is_some_and(|child| matches!(child.try_wait(), Ok(None))) {
+            return Ok("the window is open already");
+        }
+        self.child = Some((self.open)()?);
+        Ok("the window opens beside, and closes with /quit")
+    }
+}
+
+impl Drop for Window {
+    fn drop(&mut self) {
+        if let Some(child) = &mut self.child {
+            // It may have been closed long ago.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
 /// Takes messages and draws, until the user leaves.
-fn attend(app: &mut App, screen: &mut Screen, inbox: &Receiver<Message>, desk: &Desk, first: Vec<Effect>) -> Result<(), Failure> {
+fn attend(app: &mut App, screen: &mut Screen, inbox: &Receiver<Message>, desk: &mut Desk, first: Vec<Effect>) -> Result<(), Failure> {
     let mut leave = act(app, screen, desk, first)?;
     let mut changed = true;
     while !leave {
@@ -168,7 +195,7 @@ fn take(app: &mut App, message: Message) -> Vec<Effect> {
 }
 
 /// Does what the interface asked for; whether to leave.
-fn act(app: &mut App, screen: &mut Screen, desk: &Desk, effects: Vec<Effect>) -> Result<bool, Failure> {
+fn act(app: &mut App, screen: &mut Screen, desk: &mut Desk, effects: Vec<Effect>) -> Result<bool, Failure> {
     for effect in effects {
         match effect {
             Effect::Send(request) => {
@@ -180,8 +207,8 @@ fn act(app: &mut App, screen: &mut Screen, desk: &Desk, effects: Vec<Effect>) ->
                 Err(failure) => app.transcript.add(Voice::Error, failure.message),
             },
             Effect::Stop => desk.stop(),
-            Effect::Window => match (desk.window)() {
-                Ok(()) => app.transcript.add(Voice::Agent, "the window opens beside"),
+            Effect::Window => match desk.window.show() {
+                Ok(said) => app.transcript.add(Voice::Agent, said),
                 Err(failure) => app.transcript.add(Voice::Error, failure.message),
             },
             Effect::Redraw => {
@@ -192,4 +219,23 @@ fn act(app: &mut App, screen: &mut Screen, desk: &Desk, effects: Vec<Effect>) ->
         }
     }
     Ok(false)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::process::Command;
+
+    #[test]
+    fn the_window_is_opened_once_and_ends_with_the_repl() {
+        let open = || Ok(Command::new("sleep").arg("60").spawn()?);
+        let mut window = Window { open: Box::new(open), child: None };
+        assert!(window.show().is_ok_and(|said| said.contains("opens")));
+        assert!(window.show().is_ok_and(|said| said.contains("already")));
+        let child = window.child.as_ref().map(|child| child.id().to_string()).unwrap_or_default();
+        let alive = || Command::new("kill").args(["-0", &child]).output().is_ok_and(|o| o.status.success());
+        assert!(alive());
+        drop(window);
+        assert!(!alive());
+    }
 }

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 /// Shortest time between two pictures while playing: what a terminal over SSH can take.
 const TICK: Duration = Duration::from_millis(66);
-/// How often a finished run plays by itself.
-const ENCORES: u32 = 3;
+/// How long a finished run plays by itself, over and over: an idle terminal is left in peace after that.
+const ENCORE: Duration = Duration::from_secs(60);
 
 /// Plays one film.
 pub struct Pane {
@@ -27,7 +27,8 @@ pub struct Pane {
 struct Playing {
     since: Instant,
     from_s: f64,
-    rounds_left: Option<u32>,
+    /// It rests after the round that is played then.
+    until: Option<Instant>,
 }
 
 struct Painted {
@@ -49,8 +50,21 @@ pub struct Caption {
     pub last: u32,
     /// Its time.
     pub time_s: f64,
-    /// Whether it plays.
-    pub playing: bool,
+    /// Whether it plays, rests, or is a single picture.
+    pub play: Play,
+}
+
+/// What the pane does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Play {
+    /// A picture that does not move.
+    Still,
+    /// New frames are shown as they come.
+    Following,
+    /// Over and over.
+    Playing,
+    /// On one frame.
+    Paused,
 }
 
 impl Pane {
@@ -77,16 +91,19 @@ impl Pane {
         self.playing = None;
     }
 
-    /// A run ended: play it a few times.
+    /// A run ended: play it for a while.
     pub fn run_ended(&mut self, now: Instant) {
         if self.following && self.last() > 0 {
             self.following = false;
-            self.start(now, 0.0, Some(ENCORES));
+            self.start(now, 0.0, Some(now + ENCORE));
         }
     }
 
-    /// Plays without end, or pauses.
-    pub fn toggle(&mut self, now: Instant) {
+    /// Plays without end, or pauses; false where nothing moves.
+    pub fn toggle(&mut self, now: Instant) -> bool {
+        if self.last() == 0 || self.painter.is_none() {
+            return false;
+        }
         self.following = false;
         match self.playing {
             Some(_) => self.playing = None,
@@ -96,11 +113,12 @@ impl Pane {
                 self.start(now, from_s, None);
             }
         }
+        true
     }
 
-    fn start(&mut self, now: Instant, from_s: f64, rounds_left: Option<u32>) {
+    fn start(&mut self, now: Instant, from_s: f64, until: Option<Instant>) {
         if self.painter.is_some() {
-            self.playing = Some(Playing { since: now, from_s, rounds_left });
+            self.playing = Some(Playing { since: now, from_s, until });
         }
     }
 
@@ -145,13 +163,14 @@ impl Pane {
             return false;
         }
         let elapsed = playing.from_s + now.duration_since(playing.since).as_secs_f64();
-        let (round, index) = ((elapsed / (interval * count as f64)) as u32, (elapsed / interval) as usize % count);
-        if playing.rounds_left.is_some_and(|rounds| round >= rounds) {
+        let index = (elapsed / interval) as usize % count;
+        // It rests where a round ends.
+        if index < before && playing.until.is_some_and(|until| now >= until) {
             self.playing = None;
             self.shown = count - 1;
-        } else {
-            self.shown = index;
+            return true;
         }
+        self.shown = index;
         self.shown != before
     }
 
@@ -160,7 +179,13 @@ impl Pane {
         let film = self.reel.film();
         let picture = film.pictures.get(self.shown)?;
         let last = film.pictures.last().map_or(0, |p| p.index);
-        Some(Caption { version: film.version.clone(), frame: picture.index, last, time_s: picture.time_s, playing: self.playing.is_some() })
+        let play = match (self.playing, self.following) {
+            (Some(_), _) => Play::Playing,
+            _ if film.pictures.len() < 2 => Play::Still,
+            (None, true) => Play::Following,
+            (None, false) => Play::Paused,
+        };
+        Some(Caption { version: film.version.clone(), frame: picture.index, last, time_s: picture.time_s, play })
     }
 
     /// The picture encoded for `area`, and where it goes; encoded anew only when one of them changed.
@@ -209,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn plays_in_real_time_and_ends_after_its_encores() {
+    fn plays_in_real_time_over_and_over_and_rests_after_a_minute() {
         let mut pane = Pane::new(reel(50), Some(Painter::Halfblocks));
         let start = Instant::now();
         pane.pictures_came();
@@ -218,8 +243,23 @@ mod tests {
         assert_eq!(pane.frame(), Some(25));
         assert!(!pane.advance(start + Duration::from_millis(507)), "nothing to draw within one frame");
         assert!(pane.due(start).is_some());
-        pane.advance(start + Duration::from_secs(4));
+        pane.advance(start + Duration::from_millis(1_205));
+        assert_eq!((pane.frame(), pane.caption().map(|c| c.play)), (Some(10), Some(Play::Playing)), "a second round");
+        pane.advance(start + Duration::from_millis(60_950));
+        assert!(pane.due(start).is_some(), "the round is played to its end");
+        assert!(pane.advance(start + Duration::from_millis(61_010)), "that it rests has to be drawn");
         assert_eq!((pane.frame(), pane.due(start)), (Some(49), None), "rests on the last frame and asks for no more");
+        assert_eq!(pane.caption().map(|c| c.play), Some(Play::Paused));
+        assert!(pane.toggle(start) && pane.due(start).is_some());
+    }
+
+    #[test]
+    fn one_picture_is_a_still_that_cannot_play() {
+        let mut pane = Pane::new(reel(1), Some(Painter::Halfblocks));
+        pane.pictures_came();
+        pane.run_ended(Instant::now());
+        assert_eq!(pane.caption().map(|c| c.play), Some(Play::Still));
+        assert!(!pane.toggle(Instant::now()));
     }
 
     #[test]
@@ -229,7 +269,7 @@ mod tests {
         pane.step(-1);
         assert_eq!(pane.frame(), Some(3));
         pane.step(100);
-        assert_eq!(pane.caption().map(|c| (c.frame, c.last, c.playing)), Some((9, 9, false)));
+        assert_eq!(pane.caption().map(|c| (c.frame, c.last, c.play)), Some((9, 9, Play::Paused)));
     }
 
     #[test]

@@ -26,10 +26,11 @@ pub fn serve(mut conversation: Conversation, requests: &Receiver<Request>, post:
         }
         let mut relay = Relay { post, reel };
         let before = conversation.session().head().map(|v| v.name.clone());
+        let opens = request == Request::Open;
         if let Err(failure) = handle(&mut conversation, request, &mut relay, &stop) {
             relay.text(Voice::Error, failure.message);
         }
-        if before != conversation.session().head().map(|v| v.name.clone())
+        if (opens || before != conversation.session().head().map(|v| v.name.clone()))
             && let Ok(name) = conversation.device_name()
         {
             relay.send(Update::Device(name));
@@ -38,8 +39,17 @@ pub fn serve(mut conversation: Conversation, requests: &Receiver<Request>, post:
     }
 }
 
+/// What a newcomer can do.
+const SAY: &str = "Say what should happen, as \"make it jump\", \"drop it from 1 m\", \"softer\", \"undo that\". The phrasebook understands it, offline; /help \
+                   lists commands and keys.";
+
 fn handle(conversation: &mut Conversation, request: Request, relay: &mut Relay<'_>, stop: &Stop) -> Result<(), Failure> {
     match request {
+        Request::Open => {
+            conversation.introduce()?.into_iter().for_each(|text| relay.text(Voice::Agent, text));
+            relay.text(Voice::Agent, SAY.to_owned());
+            conversation.show(relay, stop)?;
+        }
         Request::Say(words) => {
             conversation.say(&words, relay, stop);
         }

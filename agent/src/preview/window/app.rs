@@ -13,6 +13,9 @@ const PATIENCE_S: f64 = 0.1;
 /// How much smaller at most.
 const COARSEST: f64 = 4.0;
 
+/// How much nearer a point of the wheel comes: a click, some 50 points, is a twelfth.
+const WHEEL: f32 = 0.0017;
+
 /// How two versions are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Compare {
@@ -25,7 +28,6 @@ enum Compare {
 /// One version's picture on the screen.
 struct Shown {
     version: String,
-    frame: u32,
     texture: TextureHandle,
     extent: Extent,
 }
@@ -116,10 +118,10 @@ impl Window {
                     }
                     (self.title, self.versions, self.head) = (title, list, head);
                 }
-                News::Picture { place, version, frame, size, rgba8, extent } => {
+                News::Picture { place, version, size, rgba8, extent } => {
                     let image = ColorImage::from_rgba_unmultiplied(size.map(|s| s as usize), &rgba8);
                     let texture = ctx.load_texture(format!("picture{place}"), image, TextureOptions::LINEAR);
-                    self.shown[place] = Some(Shown { version, frame, texture, extent });
+                    self.shown[place] = Some(Shown { version, texture, extent });
                     self.pixel_s = self.asked_at.elapsed().as_secs_f64() / f64::from(size[0] * size[1]);
                     let all = self.asked.as_ref().is_none_or(|wish| place + 1 >= wish.versions.len());
                     self.waiting &= !all;
@@ -163,7 +165,9 @@ impl Window {
                 self.orbit = None;
             }
             if input.key_pressed(Key::B) {
-                self.flipped = !self.flipped;
+                // From beside it goes to flipping first.
+                self.flipped = self.compare == Compare::Beside || !self.flipped;
+                self.compare = Compare::Flip;
             }
         });
     }
@@ -187,8 +191,9 @@ impl Window {
         if ui.selectable_label(follows, "follow the newest").clicked() {
             self.chosen = None;
         }
+        self.comparison(ui);
         ui.separator();
-        egui::ScrollArea::vertical().auto_shrink(false).max_height((ui.available_height() - 150.0).max(60.0)).show(ui, |ui| {
+        egui::ScrollArea::vertical().auto_shrink(false).max_height((ui.available_height() - 120.0).max(60.0)).show(ui, |ui| {
             let current = self.current().cloned();
             for listed in self.versions.iter().rev() {
                 let here = current.as_ref() == Some(&listed.name);
@@ -198,16 +203,15 @@ impl Window {
             }
         });
         ui.separator();
-        self.comparison(ui);
-        ui.separator();
-        ui.small("drag: turn · right drag: move · wheel: nearer\nSpace play · arrows step · F view as at first · B flip");
+        ui.label("drag: turn · right drag: move\nwheel: nearer · F: as at first\nSpace: play · arrows: step\nB: flip between two");
     }
 
     fn comparison(&mut self, ui: &mut Ui) {
         let label = self.other.clone().unwrap_or_else(|| "nothing".to_owned());
         egui::ComboBox::from_label("compare with").selected_text(label).show_ui(ui, |ui| {
             ui.selectable_value(&mut self.other, None, "nothing");
-            for listed in &self.versions {
+            let current = self.current().cloned();
+            for listed in self.versions.iter().filter(|v| Some(&v.name) != current.as_ref()) {
                 ui.selectable_value(&mut self.other, Some(listed.name.clone()), &listed.name);
             }
         });
@@ -258,14 +262,15 @@ impl Window {
             let rect = egui::Rect::from_min_size(area.min + egui::vec2(width * column as f32, 0.0), egui::vec2(width, area.height()));
             let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             ui.painter().image(shown.texture.id(), rect, whole, Color32::WHITE);
-            let text = format!("{}  frame {}", shown.version, shown.frame);
-            ui.painter().text(
-                rect.min + egui::vec2(8.0, 6.0),
-                egui::Align2::LEFT_TOP,
-                text,
-                egui::FontId::proportional(14.0),
-                Color32::from_gray(90),
-            );
+            let Extent { frames, frames_total, .. } = shown.extent;
+            let part = if frames < frames_total { format!(" · {frames} of {frames_total} frames simulated") } else { String::new() };
+            let text = ui.painter().layout_no_wrap(format!("{}{part}", shown.version), egui::FontId::proportional(15.0), Color32::from_gray(20));
+            let plate = egui::Rect::from_min_size(rect.min + egui::vec2(8.0, 8.0), text.size() + egui::vec2(12.0, 6.0));
+            ui.painter().rect_filled(plate, 4.0, Color32::from_white_alpha(190));
+            ui.painter().galley(plate.min + egui::vec2(6.0, 3.0), text, Color32::BLACK);
+            if column > 0 {
+                ui.painter().vline(rect.left(), rect.y_range(), egui::Stroke::new(2.0, Color32::from_gray(60)));
+            }
         }
         self.notices(ui, area);
     }
@@ -290,7 +295,7 @@ impl Window {
         } else if drag != egui::Vec2::ZERO {
             orbit.pan(drag.x, drag.y, height);
         }
-        orbit.zoom(f64::from(-wheel * 0.004).exp());
+        orbit.zoom(f64::from(-wheel * WHEEL).exp());
     }
 
     /// Asks for the picture that should be seen now, if it is another one than was asked for last.
@@ -316,6 +321,8 @@ impl Window {
             ui.vertical_centered(|ui| {
                 if let Some(share) = self.running {
                     ui.add(egui::ProgressBar::new(share).text("simulating").desired_width(320.0));
+                } else if let Some(version) = self.not_run.as_ref().filter(|name| self.versions.iter().any(|v| v.name == **name && v.under_way)) {
+                    ui.label(format!("{version} is being simulated; it shows as soon as the first quarter second is done"));
                 } else if let Some(version) = &self.not_run {
                     ui.label(format!("{version} has no motion in the store yet (on this device, at this quality)"));
                     if ui.button("simulate it").clicked() {

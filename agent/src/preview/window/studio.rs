@@ -2,7 +2,7 @@
 //! asked for last.
 
 use crate::cli::exit::Failure;
-use crate::history::Session;
+use crate::history::{Session, Version};
 use phystalk::gpu::DeviceRequest;
 use phystalk::spec::{Camera, Spec};
 use phystalk::stages::{Engine, Player, RunOptions};
@@ -14,6 +14,8 @@ use std::time::{Duration, Instant};
 
 /// How often the store is looked at.
 const LOOK: Duration = Duration::from_millis(500);
+/// How long a version that has not run is taken to be under way, seconds.
+const UNDER_WAY_S: u64 = 120;
 /// Players kept ready; two are needed to compare.
 const PLAYERS: usize = 3;
 
@@ -68,6 +70,8 @@ pub struct Listed {
     pub name: String,
     /// What was said, and the note of an undo.
     pub words: String,
+    /// Made a moment ago and not run to its end: whoever made it is likely to be simulating it.
+    pub under_way: bool,
 }
 
 /// What one version can show.
@@ -81,6 +85,8 @@ pub struct Extent {
     pub fps: u32,
     /// From where the version itself looks.
     pub camera: Camera,
+    /// Width over height of the version's pictures.
+    pub aspect: f64,
 }
 
 /// What the window hears.
@@ -100,8 +106,6 @@ pub enum News {
         place: usize,
         /// Its name.
         version: String,
-        /// Which frame.
-        frame: u32,
         /// Width and height.
         size: [u32; 2],
         /// sRGB, opaque.
@@ -130,6 +134,8 @@ pub struct Studio {
     engine: Engine,
     players: VecDeque<Ready>,
     session: Option<Session>,
+    /// The versions that the window was told last.
+    told: Vec<Listed>,
     post: Sender<News>,
     wake: Box<dyn Fn() + Send>,
 }
@@ -138,7 +144,7 @@ impl Studio {
     /// A studio that sends to `post` and calls `wake` after it.
     pub fn new(setting: Setting, post: Sender<News>, wake: Box<dyn Fn() + Send>) -> Studio {
         let engine = Engine::new(setting.store.clone(), setting.device.clone());
-        Studio { setting, engine, players: VecDeque::new(), session: None, post, wake }
+        Studio { setting, engine, players: VecDeque::new(), session: None, told: Vec::new(), post, wake }
     }
 
     /// Serves until the window is gone.
@@ -186,7 +192,7 @@ impl Studio {
     fn follow(&mut self) {
         let name = match &self.setting.source {
             Source::Spec(spec) => {
-                let listed = Listed { name: SPEC.to_owned(), words: spec.scene.file.clone() };
+                let listed = Listed { name: SPEC.to_owned(), words: spec.scene.file.clone(), under_way: false };
                 self.say(News::Versions { title: spec.scene.file.clone(), list: vec![listed], head: Some(SPEC.to_owned()) });
                 return;
             }
@@ -194,10 +200,9 @@ impl Studio {
         };
         match Session::open(&self.setting.store, name.as_deref()) {
             Ok(session) => {
-                let same = self.session.as_ref().is_some_and(|s| s.name() == session.name() && s.versions() == session.versions());
-                if !same {
-                    let words = |note: &str, words: &str| if note.is_empty() { words.to_owned() } else { format!("{words} ({note})") };
-                    let list = session.versions().iter().map(|v| Listed { name: v.name.clone(), words: words(&v.note, &v.words) }).collect();
+                let list = listing(&session);
+                if self.session.as_ref().is_none_or(|s| s.name() != session.name()) || self.told != list {
+                    self.told.clone_from(&list);
                     self.say(News::Versions { title: session.name().to_owned(), list, head: session.head().map(|v| v.name.clone()) });
                 }
                 self.session = Some(session);
@@ -252,11 +257,11 @@ impl Studio {
                 continue;
             };
             let player = &mut self.players[at].player;
-            let camera = wish.camera.unwrap_or(player.camera);
+            let aspect = player.aspect;
+            let camera = widened(&wish.camera.unwrap_or(player.camera), aspect, wish.size);
             let image = player.picture(&mut self.engine, wish.frame, &camera, wish.size)?;
-            let extent = Extent { frames: player.frames, frames_total: player.frames_total, fps: player.fps, camera: player.camera };
-            let frame = wish.frame.min(extent.frames.saturating_sub(1));
-            self.say(News::Picture { place, version: version.clone(), frame, size: image.size, rgba8: image.rgba8, extent });
+            let extent = Extent { frames: player.frames, frames_total: player.frames_total, fps: player.fps, camera: player.camera, aspect };
+            self.say(News::Picture { place, version: version.clone(), size: image.size, rgba8: image.rgba8, extent });
         }
         Ok(())
     }
@@ -269,6 +274,22 @@ impl Studio {
         self.say(News::Running(1.0));
         Ok(())
     }
+}
+
+/// The versions as the window lists them.
+fn listing(session: &Session) -> Vec<Listed> {
+    let now_s = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let under_way = |v: &Version| v.resolved.is_none() && now_s.saturating_sub(v.time_s) < UNDER_WAY_S;
+    let words = |v: &Version| if v.note.is_empty() { v.words.clone() } else { format!("{} ({})", v.words, v.note) };
+    session.versions().iter().map(|v| Listed { name: v.name.clone(), words: words(v), under_way: under_way(v) }).collect()
+}
+
+/// The camera for a picture that is narrower than the version's own: it sees as much from side to side, and more above
+/// and below, so that nothing is cut off.
+fn widened(camera: &Camera, aspect: f64, size: [u32; 2]) -> Camera {
+    let narrower = aspect / (f64::from(size[0]) / f64::from(size[1].max(1)));
+    let half = (camera.fov_deg.to_radians() / 2.0).tan() * narrower.max(1.0);
+    Camera { fov_deg: (2.0 * half.atan()).to_degrees(), ..*camera }
 }
 
 /// What a spec without a session is called in the list.
@@ -287,4 +308,18 @@ impl phystalk::Sink for Reporter<'_> {
     }
     fn frame(&mut self, _: phystalk::Frame) {}
     fn warning(&mut self, _: &str) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_narrow_pane_sees_as_far_to_the_sides() {
+        let camera = Camera { eye_m: [1.0, 0.0, 0.0], target_m: [0.0; 3], fov_deg: 40.0, orbit_deg_s: 0.0 };
+        let across = |camera: &Camera, aspect: f64| (camera.fov_deg.to_radians() / 2.0).tan() * aspect;
+        let half = widened(&camera, 16.0 / 9.0, [800, 900]);
+        assert!((across(&half, 800.0 / 900.0) - across(&camera, 16.0 / 9.0)).abs() < 1e-9);
+        assert_eq!(widened(&camera, 16.0 / 9.0, [1600, 800]).fov_deg.round(), 40.0, "a wider one shows more");
+    }
 }
