@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// What the demo says, one turn each.
 const TURNS: [&str; 5] =
-    ["make the vase jump up and fall back", "softer", "do it on the moon", "back on earth, and push it to the left at 0.2 s", "undo that"];
+    ["make the vase jump up and fall back", "softer", "do it on the moon", "back on earth, and push it to the left at 0.3 s", "undo that"];
 
 pub fn run(flags: &Flags) -> Result<(), Failure> {
     let out = flags.out.clone().unwrap_or_else(|| PathBuf::from("phystalk-demo"));

@@ -75,8 +75,13 @@ pub fn read(mut tokens: Vec<Token>, names: &Names) -> Reading {
     let mut at = 0;
     while let Some(i) = (at..phrases.len()).find(|&i| phrases[i].sense == Sense::Unknown) {
         let token = phrases[i].span.start;
-        let after_article = i > 0 && phrases[i - 1].sense == Sense::Article;
-        match correct(&tokens[token].word, names, after_article) {
+        let next = phrases.get(i + 1).map(|p| &p.sense);
+        let place = match (i > 0 && phrases[i - 1].sense == Sense::Article, next) {
+            (false, _) => Place::Any,
+            (true, Some(Sense::Objects(_) | Sense::Unknown | Sense::Material(_) | Sense::Property(_))) => Place::Describing,
+            (true, _) => Place::Noun,
+        };
+        match correct(&tokens[token].word, names, place) {
             Some(known) => {
                 corrections.push(format!("read '{}' as '{known}'", tokens[token].text));
                 tokens[token].word = known;
@@ -252,26 +257,32 @@ fn tell_times(phrases: &mut [Phrase]) {
     }
 }
 
-/// Words of the lexicon and units that a misspelt word may have meant; those of `nouns` also after "the".
+/// Where a word stands that may be misspelt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// Not after an article.
+    Any,
+    /// Between "the" and a noun.
+    Describing,
+    /// After "the", with no noun behind it: "push the sofa left" is not about something soft.
+    Noun,
+}
+
+/// Words of the lexicon and units that a misspelt word may have meant, and which of them may stand after "the".
 struct Known {
     all: BTreeSet<&'static str>,
     nouns: BTreeSet<&'static str>,
+    adjectives: BTreeSet<&'static str>,
 }
 
 static KNOWN: LazyLock<Known> = LazyLock::new(|| {
-    let mut known = Known { all: BTreeSet::new(), nouns: BTreeSet::new() };
+    let mut known = Known { all: BTreeSet::new(), nouns: BTreeSet::new(), adjectives: BTreeSet::new() };
     for entry in SECTIONS.iter().flat_map(|s| s.entries) {
         let noun = matches!(
             entry.sense,
-            Sense::Material(_)
-                | Sense::Gravity(_)
-                | Sense::Property(_)
-                | Sense::Part(_)
-                | Sense::Direction(_)
-                | Sense::Camera
-                | Sense::Ground
-                | Sense::Quality(_, _, Form::Plain)
+            Sense::Material(_) | Sense::Gravity(_) | Sense::Property(_) | Sense::Part(_) | Sense::Direction(_) | Sense::Camera | Sense::Ground
         );
+        let adjective = matches!(entry.sense, Sense::Quality(_, _, Form::Plain));
         // What is refused is refused for its own name, never for one that looks like it.
         if matches!(entry.sense, Sense::Unbuilt(_)) {
             continue;
@@ -280,6 +291,9 @@ static KNOWN: LazyLock<Known> = LazyLock::new(|| {
             known.all.insert(word);
             if noun {
                 known.nouns.insert(word);
+            }
+            if adjective {
+                known.adjectives.insert(word);
             }
         }
     }
@@ -294,7 +308,7 @@ static KNOWN: LazyLock<Known> = LazyLock::new(|| {
 ///
 /// Words under four letters are left alone, and the first letter holds (or changes places with the second): so "flower"
 /// is never read as "lower". Names of objects are exempt from the latter.
-fn correct(word: &str, names: &Names, after_article: bool) -> Option<String> {
+fn correct(word: &str, names: &Names, place: Place) -> Option<String> {
     let letters = word.chars().count();
     if letters < 4 || KNOWN.all.contains(word) || !word.chars().all(char::is_alphabetic) {
         return None;
@@ -309,8 +323,12 @@ fn correct(word: &str, names: &Names, after_article: bool) -> Option<String> {
         let (a, b) = ((a.next(), a.next()), (b.next(), b.next()));
         a.0 == b.0 || (a.0 == b.1 && a.1 == b.0)
     };
-    let pool = if after_article { &KNOWN.nouns } else { &KNOWN.all };
-    let mut found = pool.iter().filter(|k| starts_alike(k) && near(k));
+    let fits = |known: &&&str| match place {
+        Place::Any => true,
+        Place::Describing => KNOWN.nouns.contains(**known) || KNOWN.adjectives.contains(**known),
+        Place::Noun => KNOWN.nouns.contains(**known),
+    };
+    let mut found = KNOWN.all.iter().filter(fits).filter(|k| starts_alike(k) && near(k));
     let first = found.next()?;
     let rest: Vec<_> = found.collect();
     // "jumsp" is near "jump" and "jumps": one meaning, so either will do.

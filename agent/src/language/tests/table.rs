@@ -160,6 +160,7 @@ fn an_unknown_noun_is_the_only_object() {
     same("push the toy car to the left", "push it to the left");
     same("drop the rubber duckling from 1 m", "drop it of rubber from 1 m");
     same("vases jump", "jump");
+    same("push the sofa left", "push it left");
     same("the vase jumps and the vase is softer", "it jumps and it is softer");
     let said = gloss(&capture.ask("make the vase jump up and fall back"));
     assert!(said.starts_with("vase is taken for my-capture, the only object here"), "{said}");

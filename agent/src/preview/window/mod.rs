@@ -15,6 +15,10 @@ pub fn open(setting: Setting, chosen: Option<String>) -> Result<(), Failure> {
     let viewport = egui::ViewportBuilder::default().with_title("PhysTalk").with_inner_size([1180.0, 680.0]).with_min_inner_size([420.0, 280.0]);
     let options = eframe::NativeOptions { viewport, ..Default::default() };
     let create: eframe::AppCreator<'_> = Box::new(move |context| {
+        // The usual grey of labels is hard to read beside a bright picture.
+        for (theme, ink) in [(egui::Theme::Dark, 225), (egui::Theme::Light, 25)] {
+            context.egui_ctx.style_mut_of(theme, |style| style.visuals.override_text_color = Some(egui::Color32::from_gray(ink)));
+        }
         let (post, news) = channel();
         let (requests, inbox) = channel();
         let ctx = context.egui_ctx.clone();
