@@ -97,7 +97,7 @@ fn a_block_jumps_and_what_did_not_change_is_not_run_again() {
 
     // A push at 0.3 s goes on from the state before it, and ends in the same bits as a whole run.
     let mut pushed = first.clone();
-    pushed.events.push(Event { name: "push1".into(), at_s: 0.3, object: "block".into(), push_m_s: Some([1.0, 0.0, 0.0]), velocity_m_s: None });
+    pushed.events.push(Event { push_m_s: Some([1.0, 0.0, 0.0]), ..Event::at("push1", "block", 0.3) });
     let camera = Some(report.camera);
     let (report, resumed) = run(&mut engine_b, &pushed, folder, Some(&first), camera);
     assert_eq!(actions(&report), [Hit, Hit, Hit, Resume, Run]);

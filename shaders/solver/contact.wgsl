@@ -2,9 +2,9 @@
 // node which the particle marks can find the same normal from its own place.
 
 struct Collider {
-    // Centre of a box or sphere, a point of a plane; w: 0 plane, 1 box, 2 sphere.
+    // Centre of a box, a point of a plane, one end of a capsule's axis; w: 0 plane, 1 box, 2 capsule.
     at: vec4<f32>,
-    // Half the edges of a box, the unit normal of a plane; w: radius of a sphere.
+    // Half the edges of a box, the unit normal of a plane, the axis of a capsule, none of a sphere; w: its radius.
     shape: vec4<f32>,
     // Friction, restitution.
     surface: vec4<f32>,
@@ -17,13 +17,20 @@ struct Touch {
     face: u32,
 }
 
+// From the nearest point of a capsule's axis.
+fn off_axis(c: Collider, x: vec3<f32>) -> vec3<f32> {
+    let d = x - c.at.xyz;
+    let axis = c.shape.xyz;
+    return d - axis * clamp(dot(d, axis) / max(dot(axis, axis), 1e-30), 0.0, 1.0);
+}
+
 fn touch(c: Collider, x: vec3<f32>) -> Touch {
     let d = x - c.at.xyz;
     if (c.at.w == 0.0) {
         return Touch(dot(d, c.shape.xyz), 0u);
     }
     if (c.at.w == 2.0) {
-        return Touch(length(d) - c.shape.w, 0u);
+        return Touch(length(off_axis(c, x)) - c.shape.w, 0u);
     }
     // The face that separates most. Edges stay sharp: distances beyond them are those of a face.
     let q = abs(d) - c.shape.xyz;
@@ -41,7 +48,7 @@ fn surface_normal(c: Collider, face: u32, x: vec3<f32>) -> vec3<f32> {
         return c.shape.xyz;
     }
     if (c.at.w == 2.0) {
-        let d = x - c.at.xyz;
+        let d = off_axis(c, x);
         return d * inverseSqrt(max(dot(d, d), 1e-20));
     }
     let side = select(1.0, -1.0, face >= 4u);

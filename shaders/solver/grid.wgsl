@@ -2,7 +2,7 @@
 // sums and marks that it read zeroed for the next substep.
 
 struct Pin {
-    // As a collider's; w of `at`: 0 half-space, 1 box, 2 sphere.
+    // As a collider's; w of `at`: 0 half-space, 1 box, 2 capsule or sphere.
     at: vec4<f32>,
     shape: vec4<f32>,
     // Box that it is limited to.

@@ -22,6 +22,8 @@ pub enum Format {
 pub struct Loaded {
     /// In the file's own frame and order.
     pub gaussians: Gaussians,
+    /// Place of each in the file, from 0: those that are unusable are left out.
+    pub place: Vec<u32>,
     /// By content, whatever the name says.
     pub format: Format,
     /// What was left out or repaired, one sentence each.
@@ -71,8 +73,8 @@ pub fn parse(bytes: &[u8], name: &str) -> Result<Loaded, SceneError> {
     if gaussians.is_empty() {
         return Err(SceneError::Empty { file: name.to_owned(), why: "it says so itself, its count is 0".to_owned() });
     }
-    let (gaussians, warnings) = keep_usable(gaussians, name)?;
-    Ok(Loaded { gaussians, format, warnings, blake3: blake3::hash(bytes).to_hex().to_string(), stated_up: up::stated(&comments) })
+    let (gaussians, place, warnings) = keep_usable(gaussians, name)?;
+    Ok(Loaded { gaussians, place, format, warnings, blake3: blake3::hash(bytes).to_hex().to_string(), stated_up: up::stated(&comments) })
 }
 
 /// Tells the format by content; the extension only where content cannot say.
@@ -126,8 +128,8 @@ fn is_ksplat(bytes: &[u8]) -> bool {
 /// Beyond this a number of a Gaussian, in the file's units, is no measurement; squares stay finite below.
 const ABSURD: f32 = 1e12;
 
-/// Drops Gaussians with NaN, infinities or absurd numbers, and makes negative scales positive; says how many of each.
-fn keep_usable(mut g: Gaussians, name: &str) -> Result<(Gaussians, Vec<String>), SceneError> {
+/// Drops Gaussians with NaN, infinities or absurd numbers, and makes negative scales positive; says which are kept and how many were not.
+fn keep_usable(mut g: Gaussians, name: &str) -> Result<(Gaussians, Vec<u32>, Vec<String>), SceneError> {
     let width = g.sh_coefficients() * 3;
     let largest = |i: usize| {
         let numbers = g.mean[i].to_array().into_iter().chain(g.scale[i].to_array()).chain(g.rotation[i]).chain([g.opacity[i]]);
@@ -163,7 +165,7 @@ fn keep_usable(mut g: Gaussians, name: &str) -> Result<(Gaussians, Vec<String>),
     warn(not_finite, "dropped: NaN or infinite numbers");
     warn(absurd, "dropped: numbers over 1e12");
     warn(negative, "have negative scales, taken as positive");
-    Ok((g, warnings))
+    Ok((g, keep, warnings))
 }
 
 /// Writes a scene in the format of the name's extension and says what that format cannot hold.

@@ -22,7 +22,7 @@ pub use frame::SceneFrame;
 pub use gaussians::{Gaussians, morton_order};
 pub use info::{Bounds, SceneInfo, info};
 pub use prune::floaters;
-pub use select::select;
+pub use select::{in_box, in_sphere, select};
 pub use up::{UpGuess, guess_up};
 
 #[cfg(test)]

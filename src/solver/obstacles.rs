@@ -78,17 +78,27 @@ fn geometry(shape: &ColliderShape, grow_m: f32) -> ([f32; 4], [f32; 4]) {
             (point(&b.centre_m).extend(1.0).into(), half.extend(0.0).into())
         }
         ColliderShape::Sphere(s) => (point(&s.centre_m).extend(2.0).into(), [0.0, 0.0, 0.0, s.radius_m as f32 + grow_m]),
+        ColliderShape::Capsule(c) => {
+            let axis = (DVec3::from(c.to_m) - DVec3::from(c.from_m)).as_vec3();
+            (point(&c.from_m).extend(2.0).into(), axis.extend(c.radius_m as f32 + grow_m).into())
+        }
     }
 }
 
 impl ColliderRecord {
+    /// From the nearest point of a capsule's axis.
+    fn off_axis(&self, x: Vec3) -> Vec3 {
+        let (d, axis) = (x - Vec3::from_slice(&self.at), Vec3::from_slice(&self.shape));
+        d - axis * (d.dot(axis) / axis.length_squared().max(1e-30)).clamp(0.0, 1.0)
+    }
+
     /// Signed distance to the surface and the face that is nearest.
     pub fn touch(&self, x: Vec3) -> Touch {
         let d = x - Vec3::from_slice(&self.at);
         let shape = Vec3::from_slice(&self.shape);
         match self.at[3] as u32 {
             0 => Touch { distance_m: d.dot(shape), face: 0 },
-            2 => Touch { distance_m: d.length() - self.shape[3], face: 0 },
+            2 => Touch { distance_m: self.off_axis(x).length() - self.shape[3], face: 0 },
             _ => {
                 let q = d.abs() - shape;
                 let axis = if q.x > q.y && q.x > q.z {
@@ -108,7 +118,7 @@ impl ColliderRecord {
     pub fn normal(&self, face: u32, x: Vec3) -> Vec3 {
         match self.at[3] as u32 {
             0 => Vec3::from_slice(&self.shape),
-            2 => (x - Vec3::from_slice(&self.at)).normalize_or(Vec3::Z),
+            2 => self.off_axis(x).normalize_or(Vec3::Z),
             _ => {
                 let mut normal = Vec3::ZERO;
                 normal[(face & 3) as usize] = if face >= 4 { -1.0 } else { 1.0 };

@@ -111,6 +111,12 @@ impl Solver {
         if supported.is_empty() {
             return Ok(report);
         }
+        let carries = |s: &ParticleState| supported.contains(&s.object()) && self.laws.substances[s.substance()].can_stand();
+        if !states.iter().any(carries) {
+            // Heaps stand where they are, and carry nothing.
+            self.replace(&states);
+            return Ok(report);
+        }
         let kept = self.params;
         let result = self.search(&states, &supported, stop, progress, &mut report);
         self.params = kept;

@@ -72,7 +72,7 @@ pub struct Collider {
 /// Holds whatever lies in a shape, within the box of the object that it belongs to: still, or along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PinRegion {
-    /// Inside a box or sphere, behind a plane.
+    /// Inside a box, sphere or capsule, behind a plane.
     pub shape: ColliderShape,
     /// Lowest corner of the object's captured bounds.
     pub low_m: Vec3,

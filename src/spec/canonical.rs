@@ -64,8 +64,8 @@ fn document(root: &Value) -> String {
     }
     for (key, value) in root.iter().filter(|(_, value)| is_section(value)) {
         match value {
-            Value::Array(entries) => entries.iter().for_each(|entry| section(&mut out, &format!("[[{key}]]"), entry)),
-            table => section(&mut out, &format!("[{key}]"), table),
+            Value::Array(entries) => entries.iter().for_each(|entry| section(&mut out, &format!("[[{key}]]"), key, entry)),
+            table => section(&mut out, &format!("[{key}]"), key, table),
         }
     }
     out
@@ -80,10 +80,17 @@ fn is_section(value: &Value) -> bool {
     }
 }
 
-fn section(out: &mut String, head: &str, table: &Value) {
+/// A table's own values on lines of their own, then the lists of tables in it.
+fn section(out: &mut String, head: &str, path: &str, table: &Value) {
     let _ = write!(out, "\n{head}\n");
-    for (key, value) in table.as_object().into_iter().flatten() {
+    let lists = |value: &Value| !value.is_object() && is_section(value);
+    let pairs = || table.as_object().into_iter().flatten();
+    for (key, value) in pairs().filter(|(_, value)| !lists(value)) {
         assign(out, key, value);
+    }
+    for (key, list) in pairs().filter(|(_, value)| lists(value)) {
+        let path = format!("{path}.{key}");
+        list.as_array().into_iter().flatten().for_each(|entry| section(out, &format!("[[{path}]]"), &path, entry));
     }
 }
 

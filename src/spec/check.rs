@@ -129,6 +129,11 @@ impl<'a> Walk<'a> {
                 let mut error = SpecError::unknown(&place.shown, "key", key, known);
                 error.message = format!("{} = {}", error.message, show(value)).into();
                 error.nearest = error.nearest.or_else(|| elsewhere(key));
+                let kinds = kinds_with(key);
+                if place.pattern.ends_with("material") && !kinds.is_empty() {
+                    error.nearest = None;
+                    error.allowed = error.allowed.map(|known| format!("{known}; `{key}` is of kind {}", kinds.join(", ")).into());
+                }
                 error
             }
         }
@@ -224,8 +229,13 @@ impl<'a> Walk<'a> {
                     };
                     return format!("{}{range}", if count == 3 { "a vector of 3 numbers".to_owned() } else { format!("a list of {count} numbers") });
                 }
-                _ => "a list".to_owned(),
+                _ => match (resolved["items"]["type"].as_str(), resolved["maxItems"].as_u64()) {
+                    (Some("array"), _) => format!("a list of {}", self.describe(&resolved["items"]).replace("a list", "lists")),
+                    (Some("integer"), Some(most)) => format!("a list of at most {most} whole numbers"),
+                    _ => "a list".to_owned(),
+                },
             },
+            Some("boolean") => "true or false".to_owned(),
             Some("object") => {
                 let keys: Vec<&str> = properties(resolved).map(|(key, _)| key.as_str()).collect();
                 format!("a table of {}", keys.join(", "))
@@ -234,6 +244,13 @@ impl<'a> Walk<'a> {
         };
         with_range(&sort, schema, resolved)
     }
+}
+
+/// The kinds of material that have a parameter of that name.
+fn kinds_with(key: &str) -> Vec<&'static str> {
+    let forms = super::schema::spec()["$defs"]["Material"]["oneOf"].as_array();
+    let having = forms.into_iter().flatten().filter(|form| form["properties"].get(key).is_some());
+    having.filter_map(|form| Some(tag(form)?.1)).collect()
 }
 
 /// A key like this one in another table, as a whole path.

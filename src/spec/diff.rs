@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::path::{self, LISTS};
+use super::path::{self, Step};
 use super::{Edit, Spec, canonical::inline, gloss};
 
 /// Differences smaller than this share of the value are noise.
@@ -56,11 +56,11 @@ impl Change {
     }
 
     fn into_edit(self) -> Edit {
-        let entry = LISTS.into_iter().find(|list| {
-            let name = self.path.strip_prefix(list).and_then(|rest| rest.strip_prefix('.'));
-            name.is_some_and(|name| *list == "expect" || !name.contains('.'))
-        });
-        match (entry, self.from, self.to) {
+        let list = match path::steps(&self.path).last() {
+            Some(Step::Entry(name)) => Some(self.path[..self.path.len() - name.len() - 1].to_owned()),
+            _ => None,
+        };
+        match (list, self.from, self.to) {
             (Some(list), None, Some(value)) => Edit::add(list, value),
             (_, _, Some(value)) => Edit::set(self.path, value),
             (_, _, None) => Edit::remove(self.path),
@@ -93,7 +93,7 @@ fn compare(path: &str, from: &Value, to: &Value, changes: &mut Vec<Change>) {
             for key in b.keys().chain(a.keys().filter(|key| !b.contains_key(*key))) {
                 let inner = path::join(path, key);
                 match (a.get(key), b.get(key)) {
-                    (from, to) if path.is_empty() && LISTS.contains(&key.as_str()) => compare_lists(key, entries(from), entries(to), changes),
+                    (from, to) if is_list(&inner) => compare_lists(&inner, entries(from), entries(to), changes),
                     (Some(from), Some(to)) => compare(&inner, from, to, changes),
                     (from, to) => changes.push(Change::new(&inner, from, to)),
                 }
@@ -107,9 +107,25 @@ fn entries(list: Option<&Value>) -> &[Value] {
     list.and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default()
 }
 
-/// Entries are the same thing where they have the same name.
+fn is_list(path: &str) -> bool {
+    matches!(path::steps(path).last(), Some(Step::List(_)))
+}
+
+/// Entries are the same thing where they have the same name. Among the parts of an object the order
+/// counts: those that stand otherwise are taken out and put in again.
 fn compare_lists(list: &str, from: &[Value], to: &[Value], changes: &mut Vec<Change>) {
     let find = |entries: &'_ [Value], name: Option<&str>| entries.iter().position(|entry| path::entry_name(entry) == name);
+    let names = |entries: &[Value]| entries.iter().map(|entry| path::entry_name(entry).map(str::to_owned)).collect::<Vec<_>>();
+    if list.ends_with(".part") {
+        let (before, after) = (names(from), names(to));
+        let kept = before.iter().filter(|name| after.contains(name));
+        let patched: Vec<_> = kept.chain(after.iter().filter(|name| !before.contains(name))).collect();
+        if !patched.into_iter().eq(&after) {
+            changes.extend(from.iter().enumerate().map(|(i, entry)| Change::new(&place(list, i, entry), Some(entry), None)));
+            changes.extend(to.iter().enumerate().map(|(i, entry)| Change::new(&place(list, i, entry), None, Some(entry))));
+            return;
+        }
+    }
     for (index, entry) in to.iter().enumerate() {
         let place = place(list, index, entry);
         match find(from, path::entry_name(entry)) {
@@ -175,11 +191,17 @@ pub(super) fn ratio(from: &Value, to: &Value) -> Option<f64> {
 /// The unit that a path's last key carries.
 pub fn unit(path: &str) -> Option<&'static str> {
     let key = path.rsplit('.').find(|key| !matches!(*key, "x" | "y" | "z" | "min" | "max" | "first" | "last"))?;
+    // A threshold of snow, not a time.
+    if key == "theta_s" {
+        return None;
+    }
     let units = [
         ("_kg_m3", "kg/m³"),
         ("_per_s2", "/s²"),
         ("_per_s", "/s"),
         ("_per_m", "/m"),
+        ("_pa_s", "Pa·s"),
+        ("_n_m", "N/m"),
         ("_m_s2", "m/s²"),
         ("_m_s", "m/s"),
         ("_rad_s", "rad/s"),

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::error::{SpecError, SpecErrorKind, shorten, show};
-use super::path::{self, LISTS};
-use super::{Spec, canonical::inline, spelling};
+use super::path::{self, LISTS, Step};
+use super::{Spec, aliases, canonical::inline};
 
 /// Tables that hold one of several forms: to set one form is to leave the other.
 const CHOICES: [&str; 3] = ["select", "shape", "region"];
@@ -26,7 +26,7 @@ pub enum Edit {
     },
     /// Adds an entry with a name to a list.
     Add {
-        /// The list: `object`, `pin`, `collider`, `force`, `event` or `expect`.
+        /// The list: `object`, `pin`, `collider`, `force`, `event` or `expect`, or `object.NAME.part`.
         path: String,
         /// The entry.
         value: serde_json::Value,
@@ -41,6 +41,11 @@ pub enum Edit {
 impl Spec {
     /// The spec after a list of edits: all of them, or an error and none.
     pub fn apply(&self, edits: &[Edit]) -> Result<Spec, SpecError> {
+        self.apply_noted(edits, &mut Vec::new())
+    }
+
+    /// As [`Spec::apply`]; `notes` gets a sentence for each value that was converted from another program's.
+    pub fn apply_noted(&self, edits: &[Edit], notes: &mut Vec<String>) -> Result<Spec, SpecError> {
         let mut root = self.to_value();
         for edit in edits {
             if edit.path().is_empty() {
@@ -54,7 +59,7 @@ impl Spec {
                 Edit::Remove { path } => remove(&mut root, path)?,
             }
         }
-        Spec::from_value(root)
+        Spec::from_value_noted(root, notes)
     }
 }
 
@@ -118,45 +123,32 @@ fn parse_value(path: &str, text: &str) -> Result<Value, SpecError> {
     }
 }
 
-/// Splits a path into the list, the entry's name and the rest; lists are the first key only.
-/// The name of a condition is its whole text, dots included.
-fn split_list(path: &str) -> Option<(&'static str, Option<&str>, Option<&str>)> {
-    let (first, rest) = match path.split_once('.') {
-        Some((first, rest)) => (first, Some(rest)),
-        None => (path, None),
-    };
-    let list = LISTS.into_iter().find(|list| *list == first)?;
-    match rest {
-        None => Some((list, None, None)),
-        Some(text) if list == "expect" => Some((list, Some(text), None)),
-        Some(rest) => match rest.split_once('.') {
-            Some((name, inner)) => Some((list, Some(name), Some(inner))),
-            None => Some((list, Some(rest), None)),
-        },
-    }
-}
-
 fn set(root: &mut Value, path: &str, value: Value) -> Result<(), SpecError> {
-    let path = spelling::settle_path(path);
     // A preset is a whole material.
     let path = match path.strip_suffix(".preset") {
-        Some(front) if front.ends_with(".material") => front,
-        _ => &path,
+        Some(front) if is_material(front) => front,
+        _ => path,
     };
-    if let Some((list, name, None)) = split_list(path) {
-        let name = name.ok_or_else(|| by_name(list))?;
-        *find_entry(root, list, name)? = named(value, list, name);
-        return Ok(());
+    let steps = path::steps(path);
+    let (last, front) = split_last(&steps, path)?;
+    match last {
+        Step::List(_) => return Err(by_name(path)),
+        Step::Entry(name) => {
+            let list = front[front.len() - 1].text();
+            *entry(root, front, name)? = named(value, list, name);
+            return Ok(());
+        }
+        Step::Key(_) => {}
     }
-    let (parent, key) = parent_of(root, path)?;
+    let (parent, key) = (parent_of(root, front, last.text())?, last.text());
     match parent {
         Value::Array(items) => {
             let index = axis(path, key, items)?;
             items[index] = value;
         }
         Value::Object(table) => {
-            if spelling::is_lame(key) {
-                table.shift_remove("young_pa");
+            if is_material(self::front(path)) {
+                set_parameter(table, key, &value);
             }
             table.insert(key.to_owned(), value);
         }
@@ -165,72 +157,123 @@ fn set(root: &mut Value, path: &str, value: Value) -> Result<(), SpecError> {
     Ok(())
 }
 
+fn is_material(path: &str) -> bool {
+    path.ends_with(".material")
+}
+
+/// Makes room for a parameter: a new kind keeps what it shares with the old one, and a value under
+/// another program's name replaces ours.
+fn set_parameter(table: &mut Map<String, Value>, key: &str, value: &Value) {
+    let kind = table.get("kind").and_then(Value::as_str).unwrap_or_default().to_owned();
+    match (key, value.as_str()) {
+        ("kind", Some(next)) if next != kind => aliases::switch_kind(table, next),
+        _ => aliases::stands_for(&kind, key).iter().for_each(|ours| {
+            table.shift_remove(*ours);
+        }),
+    }
+}
+
 fn add(root: &mut Value, path: &str, value: Value) -> Result<(), SpecError> {
-    if !LISTS.contains(&path) {
-        return Err(SpecError::unknown(path, "list", path, LISTS));
+    let steps = path::steps(path);
+    match steps.split_last() {
+        Some((Step::List(_), _)) => {
+            if let Value::Array(entries) = descend(root, &steps)? {
+                entries.push(value);
+            }
+            Ok(())
+        }
+        _ => Err(SpecError::unknown(path, "list", path, LISTS)),
     }
-    let list = root.as_object_mut().map(|root| root.entry(path).or_insert_with(|| json!([])));
-    if let Some(Value::Array(entries)) = list {
-        entries.push(value);
-    }
-    Ok(())
 }
 
 fn remove(root: &mut Value, path: &str) -> Result<(), SpecError> {
-    let path = spelling::settle_path(path);
-    if let Some((list, name, None)) = split_list(&path) {
-        let name = name.ok_or_else(|| by_name(list))?;
-        find_entry(root, list, name)?;
-        if let Some(entries) = root.get_mut(list).and_then(Value::as_array_mut) {
-            entries.retain(|entry| path::entry_name(entry) != Some(name));
+    let steps = path::steps(path);
+    let (last, before) = split_last(&steps, path)?;
+    match last {
+        Step::List(_) => return Err(by_name(path)),
+        Step::Entry(name) => {
+            entry(root, before, name)?;
+            if let Value::Array(entries) = descend(root, before)? {
+                entries.retain(|entry| path::entry_name(entry) != Some(name));
+            }
+            return Ok(());
         }
-        return Ok(());
+        Step::Key(_) => {}
     }
-    let (parent, key) = parent_of(root, &path)?;
-    match parent {
-        Value::Object(table) if table.contains_key(key) => {
-            table.shift_remove(key);
-            Ok(())
+    let key = last.text();
+    match parent_of(root, before, key)? {
+        Value::Object(table) => {
+            let kind = table.get("kind").and_then(Value::as_str).unwrap_or_default();
+            let ours = if is_material(front(path)) { aliases::stands_for(kind, key).first() } else { None };
+            let key = ours.copied().unwrap_or(key);
+            match table.shift_remove(key) {
+                Some(_) => Ok(()),
+                None => Err(SpecError::unknown(front(path), "key", key, table.keys().map(String::as_str))),
+            }
         }
-        Value::Object(table) => Err(SpecError::unknown(front(&path), "key", key, table.keys().map(String::as_str))),
-        other => Err(no_parts(&path, key, other)),
+        other => Err(no_parts(path, key, other)),
     }
 }
 
-/// The table or vector that holds the last key of a path.
-fn parent_of<'a, 'p>(root: &'a mut Value, path: &'p str) -> Result<(&'a mut Value, &'p str), SpecError> {
-    let (mut at, mut walked, rest) = match split_list(path) {
-        Some((list, Some(name), Some(rest))) => (find_entry(root, list, name)?, list.len() + 1 + name.len(), rest),
-        _ => (root, 0, path),
-    };
-    let (inner, key) = rest.rsplit_once('.').map_or((None, rest), |(inner, key)| (Some(inner), key));
-    for segment in inner.into_iter().flat_map(|inner| inner.split('.')) {
-        let place = &path[..walked];
-        walked += segment.len() + usize::from(walked > 0);
-        let choice = CHOICES.contains(&place.rsplit('.').next().unwrap_or_default());
-        if at.get(segment).is_none() {
-            return Err(match at.as_object() {
-                Some(table) if !choice => SpecError::unknown(place, "key", segment, table.keys().map(String::as_str)),
-                _ => no_parts(&path[..walked], segment, at),
-            });
-        }
-        at = &mut at[segment];
+fn split_last<'a, 'p>(steps: &'a [Step<'p>], path: &str) -> Result<(Step<'p>, &'a [Step<'p>]), SpecError> {
+    let (last, front) = steps.split_last().ok_or_else(|| SpecError::new(SpecErrorKind::Syntax, path, "an edit without a path"))?;
+    Ok((*last, front))
+}
+
+/// The path of some steps.
+fn written(steps: &[Step]) -> String {
+    steps.iter().map(|step| step.text()).collect::<Vec<_>>().join(".")
+}
+
+/// What stands at the end of some steps.
+fn descend<'a>(root: &'a mut Value, steps: &[Step]) -> Result<&'a mut Value, SpecError> {
+    let mut at = root;
+    for (index, step) in steps.iter().enumerate() {
+        let place = || written(&steps[..index]);
+        at = match step {
+            Step::Entry(name) => {
+                let entries = at.as_array_mut().map(Vec::as_mut_slice).unwrap_or_default();
+                let Some(found) = entries.iter().position(|entry| path::entry_name(entry) == Some(name)) else {
+                    let list = place();
+                    let what = if list == "expect" { "condition" } else { list.rsplit('.').next().unwrap_or_default() };
+                    return Err(SpecError::unknown(&list, what, name, entries.iter().filter_map(path::entry_name)));
+                };
+                &mut entries[found]
+            }
+            // A list that is not there has no entries.
+            Step::List(list) => match at {
+                Value::Object(table) => table.entry(*list).or_insert_with(|| json!([])),
+                other => return Err(no_parts(&written(&steps[..=index]), list, other)),
+            },
+            Step::Key(key) => {
+                let place = place();
+                let choice = CHOICES.contains(&place.rsplit('.').next().unwrap_or_default());
+                if at.get(key).is_none() {
+                    return Err(match at.as_object() {
+                        Some(table) if !choice => SpecError::unknown(&place, "key", key, table.keys().map(String::as_str)),
+                        _ => no_parts(&written(&steps[..=index]), key, at),
+                    });
+                }
+                &mut at[*key]
+            }
+        };
     }
-    if CHOICES.contains(&front(path).rsplit('.').next().unwrap_or_default()) && at.get(key).is_none() {
+    Ok(at)
+}
+
+/// The table or vector that holds a key; a choice of another form is emptied first.
+fn parent_of<'a>(root: &'a mut Value, front: &[Step], key: &str) -> Result<&'a mut Value, SpecError> {
+    let at = descend(root, front)?;
+    let choice = front.last().is_some_and(|step| CHOICES.contains(&step.text()));
+    if choice && at.get(key).is_none() {
         *at = Value::Object(Map::new());
     }
-    Ok((at, key))
+    Ok(at)
 }
 
-fn find_entry<'a>(root: &'a mut Value, list: &str, name: &str) -> Result<&'a mut Value, SpecError> {
-    let entries = root.get_mut(list).and_then(Value::as_array_mut).map(Vec::as_mut_slice).unwrap_or_default();
-    match entries.iter().position(|entry| path::entry_name(entry) == Some(name)) {
-        Some(index) => Ok(&mut entries[index]),
-        None => {
-            let what = if list == "expect" { "condition" } else { list };
-            Err(SpecError::unknown(list, what, name, entries.iter().filter_map(path::entry_name)))
-        }
-    }
+fn entry<'a>(root: &'a mut Value, list: &[Step], name: &str) -> Result<&'a mut Value, SpecError> {
+    let steps: Vec<Step> = list.iter().copied().chain([Step::Entry(name)]).collect();
+    descend(root, &steps)
 }
 
 /// An entry that is set as a whole keeps its name unless it brings one.

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::diff::{length, ratio, vector};
-use super::{Auto, Axis, Change, Spec, presets};
+use super::{Auto, Axis, Change, Material, Spec, presets};
 
 /// Comparatives of a quantity: "half as STIFF", "10 % STIFFER", "10 % SOFTER".
 struct Scale {
@@ -16,6 +16,13 @@ struct Scale {
 const SCALES: &[Scale] = &[
     Scale { key: "young_pa", as_much: "stiff", more: "stiffer", less: "softer" },
     Scale { key: "density_kg_m3", as_much: "heavy", more: "heavier", less: "lighter" },
+    Scale { key: "viscosity_pa_s", as_much: "thick", more: "thicker", less: "thinner" },
+    Scale { key: "surface_tension_n_m", as_much: "strong a skin", more: "more surface tension", less: "less surface tension" },
+    Scale { key: "yield_stress_pa", as_much: "much force before it yields", more: "more before it yields", less: "less before it yields" },
+    Scale { key: "cohesion_pa", as_much: "cohesive", more: "more cohesive", less: "less cohesive" },
+    Scale { key: "friction_angle_deg", as_much: "steep a heap", more: "steeper heaps", less: "flatter heaps" },
+    Scale { key: "hardening", as_much: "much hardening", more: "more hardening", less: "less hardening" },
+    Scale { key: "weaken", as_much: "strong afterwards", more: "stronger afterwards", less: "weaker afterwards" },
     Scale { key: "duration_s", as_much: "long", more: "longer", less: "shorter" },
     Scale { key: "fps", as_much: "many frames", more: "more frames", less: "fewer frames" },
     Scale { key: "cells_across", as_much: "fine", more: "finer", less: "coarser" },
@@ -100,6 +107,9 @@ fn special(change: &Change, before: &Value, after: &Value, from: &Spec, to: &Spe
         ("at_s", _) => if after.as_f64()? > before.as_f64()? { "later" } else { "earlier" }.to_owned(),
         ("orbit_deg_s", _) => if after.as_f64()? == 0.0 { "the camera stands still" } else { "the camera goes round" }.to_owned(),
         ("eye_m", _) => nearer(from, to)?,
+        ("material", _) => format!("becomes {}", stuff(after)?),
+        ("solver", _) => if after == "sph" { "solved by particles" } else { "solved on the grid" }.to_owned(),
+        ("when", _) => "on impact".to_owned(),
         ("rest", _) => if after == "stress_free" { "the captured pose is free of stress" } else { "it stands as captured" }.to_owned(),
         ("seed", _) => "another sample of the same".to_owned(),
         _ => return None,
@@ -111,11 +121,8 @@ fn special(change: &Change, before: &Value, after: &Value, from: &Spec, to: &Spe
 fn added(change: &Change, entry: &Value, to: &Spec) -> Option<String> {
     let forward = forward(change, to);
     let vector = |key: &str| entry.get(key);
-    if let Some(push) = vector("push_m_s") {
-        return Some(format!("pushed {} at {} s", going(push, forward)?, short(entry.get("at_s")?.as_f64()?)));
-    }
-    if let Some(velocity) = vector("velocity_m_s").filter(|_| entry.get("at_s").is_some()) {
-        return Some(format!("sent {} at {} s", going(velocity, forward)?, short(entry.get("at_s")?.as_f64()?)));
+    if change.path.starts_with("event.") {
+        return happening(entry, forward);
     }
     if let Some(acceleration) = vector("acceleration_m_s2") {
         return Some(match acceleration.as_str() {
@@ -123,7 +130,43 @@ fn added(change: &Change, entry: &Value, to: &Spec) -> Option<String> {
             None => format!("drawn {}", towards(acceleration, forward)?),
         });
     }
-    field(entry, forward)
+    if change.path.starts_with("force.") {
+        return field(entry, forward);
+    }
+    // A part, or a material where there was none.
+    match change.path.rsplit('.').next() {
+        Some("material") => Some(format!("becomes {}", stuff(entry)?)),
+        _ => Some(format!("of {}", stuff(vector("material")?)?)),
+    }
+}
+
+/// What an event does, and when.
+fn happening(event: &Value, forward: Axis) -> Option<String> {
+    let when = match event.get("at_s").and_then(Value::as_f64) {
+        Some(at_s) => format!("at {} s", short(at_s)),
+        None => "on impact".to_owned(),
+    };
+    let what = if let Some(push) = event.get("push_m_s") {
+        format!("pushed {}", going(push, forward)?)
+    } else if let Some(velocity) = event.get("velocity_m_s") {
+        going(velocity, forward).map_or("stopped".to_owned(), |way| format!("sent {way}"))
+    } else if let Some(material) = event.get("material") {
+        format!("becomes {}", stuff(material)?)
+    } else if let Some(share) = event.get("weaken").and_then(Value::as_f64) {
+        format!("{} as strong", times(share))
+    } else if event.get("freeze").is_some() {
+        "held where it is".to_owned()
+    } else {
+        "let go".to_owned()
+    };
+    Some(format!("{what} {when}"))
+}
+
+/// A material by its preset's name, else by its kind.
+fn stuff(material: &Value) -> Option<String> {
+    let known: Material = serde_json::from_value(material.clone()).ok()?;
+    let preset = presets::MATERIALS.iter().find(|preset| preset.material == known).map(|preset| preset.name);
+    Some(preset.unwrap_or(known.kind()).to_owned())
 }
 
 /// A force that is a field.

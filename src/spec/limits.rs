@@ -50,6 +50,26 @@ pub const YOUNG_PA: (f64, f64) = (1e2, 1e12);
 pub const POISSON: f64 = 0.49;
 /// Density, from the air to osmium.
 pub const DENSITY_KG_M3: (f64, f64) = (1.0, 2e4);
+/// Yield stress, cohesion, and hardening of either sign: none to a diamond's.
+pub const STRENGTH_PA: f64 = 1e12;
+/// Viscosity: pitch is a hundred times as thick as this, lava a thousandth.
+pub const VISCOSITY_PA_S: f64 = 1e6;
+/// Surface tension: two thousand times that of mercury.
+pub const SURFACE_TENSION_N_M: f64 = 1e3;
+/// Angle of internal friction: gravel has 45, and none stands as steep as this.
+pub const FRICTION_ANGLE_DEG: (f64, f64) = (1.0, 80.0);
+/// Stretch and compression at which snow gives way.
+pub const SNOW_STRETCH: (f64, f64) = (1e-4, 0.9);
+/// Hardening of snow: beyond it packed snow is stiffer than any step resolves.
+pub const SNOW_HARDENING: f64 = 20.0;
+/// Period of a muscle that swings.
+pub const PERIOD_S: (f64, f64) = (1e-2, TIME_S);
+/// What an event may multiply the strength by.
+pub const WEAKEN: (f64, f64) = (1e-6, 1.0);
+/// Parts of one object.
+pub const PARTS: u32 = 64;
+/// Gaussians that are picked one by one.
+pub const IDS: u32 = 100_000;
 /// Grid cells along the longest side.
 pub const CELLS_ACROSS: (u32, u32) = (4, 1024);
 /// Particles that a Gaussian follows.
@@ -83,7 +103,7 @@ pub(super) fn each<T: Into<Value>>(low: T, high: T) -> impl FnMut(&mut Schema) {
     move |schema| bound_items(schema, low.clone(), high.clone())
 }
 
-/// Leaves a default out of the schema: an empty name stands for one that the reader makes up.
+/// Leaves a default out of the schema: it stands for something that is not there, or that the reader makes up.
 pub(super) fn no_default(schema: &mut Schema) {
     schema.remove("default");
 }

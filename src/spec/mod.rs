@@ -3,6 +3,7 @@
 //! A [`Spec`] is complete by itself: nothing outside it changes the motion. Nothing mutates one but
 //! a list of [`Edit`]s, which is applied whole or not at all.
 
+mod aliases;
 mod auto;
 mod canonical;
 mod check;
@@ -36,6 +37,8 @@ pub use path::{LISTS, is_name, name_from_file};
 pub use reference::markdown as reference_page;
 pub use types::*;
 
+#[cfg(test)]
+mod material_tests;
 #[cfg(test)]
 mod properties;
 #[cfg(test)]

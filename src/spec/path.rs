@@ -7,6 +7,47 @@ use super::limits;
 /// The lists of a spec whose entries are addressed by name.
 pub const LISTS: [&str; 6] = ["object", "pin", "collider", "force", "event", "expect"];
 
+/// One step of a path into a spec.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Step<'a> {
+    /// A key of a table, or a component of a vector.
+    Key(&'a str),
+    /// A list whose entries have names.
+    List(&'a str),
+    /// An entry of the list before.
+    Entry(&'a str),
+}
+
+impl<'a> Step<'a> {
+    /// As written.
+    pub fn text(self) -> &'a str {
+        let (Step::Key(text) | Step::List(text) | Step::Entry(text)) = self;
+        text
+    }
+}
+
+/// The steps of a path. The name of a condition is its whole text, dots included.
+pub(super) fn steps(path: &str) -> Vec<Step<'_>> {
+    let mut steps: Vec<Step<'_>> = Vec::new();
+    let mut rest = Some(path);
+    while let Some(text) = rest {
+        let conditions = steps == [Step::List("expect")];
+        let (word, after) = match text.split_once('.') {
+            Some((word, after)) if !conditions => (word, Some(after)),
+            _ => (text, None),
+        };
+        let step = match steps.as_slice() {
+            [.., Step::List(_)] => Step::Entry(word),
+            [] if LISTS.contains(&word) => Step::List(word),
+            [Step::List("object"), Step::Entry(_)] if word == "part" => Step::List(word),
+            _ => Step::Key(word),
+        };
+        steps.push(step);
+        rest = after;
+    }
+    steps
+}
+
 /// What the schema says of a name.
 pub(super) const NAME_PATTERN: &str = "^[a-z0-9_-]{1,64}$";
 

@@ -32,8 +32,12 @@ impl Spec {
 
     /// Reads TOML; faults name the line.
     pub fn from_toml(text: &str) -> Result<Spec, SpecError> {
+        Spec::from_toml_noted(text, &mut Vec::new())
+    }
+
+    fn from_toml_noted(text: &str, notes: &mut Vec<String>) -> Result<Spec, SpecError> {
         let (value, lines) = toml_value(text)?;
-        Spec::from_value(value).map_err(|mut error| {
+        Spec::from_value_noted(value, notes).map_err(|mut error| {
             error.line = lines.of(&error.path);
             error
         })
@@ -41,17 +45,26 @@ impl Spec {
 
     /// Reads JSON.
     pub fn from_json(text: &str) -> Result<Spec, SpecError> {
+        Spec::from_json_noted(text, &mut Vec::new())
+    }
+
+    fn from_json_noted(text: &str, notes: &mut Vec<String>) -> Result<Spec, SpecError> {
         let value = serde_json::from_str(text).map_err(|error| {
             let mut fault = SpecError::new(SpecErrorKind::Syntax, "", format!("not JSON: {error}"));
             fault.line = u32::try_from(error.line()).ok();
             fault
         })?;
-        Spec::from_value(value)
+        Spec::from_value_noted(value, notes)
     }
 
     /// Reads a JSON value: other spellings settled, structure and ranges checked, references resolved.
-    pub fn from_value(mut value: Value) -> Result<Spec, SpecError> {
-        spelling::settle(&mut value)?;
+    pub fn from_value(value: Value) -> Result<Spec, SpecError> {
+        Spec::from_value_noted(value, &mut Vec::new())
+    }
+
+    /// As [`Spec::from_value`]; `notes` gets a sentence for each value that was converted from another program's.
+    pub(super) fn from_value_noted(mut value: Value, notes: &mut Vec<String>) -> Result<Spec, SpecError> {
+        spelling::settle(&mut value, notes)?;
         check::spec(&value)?;
         let spec: Spec = serde_json::from_value(value).map_err(|error| SpecError::new(SpecErrorKind::Type, "", error.to_string()))?;
         validate::spec(&spec)?;
@@ -66,9 +79,14 @@ impl Spec {
 
     /// Reads a `.toml` or `.json` file. The path of its scene becomes absolute, from the file's folder.
     pub fn read(file: &Path) -> Result<Spec, SpecError> {
+        Spec::read_noted(file, &mut Vec::new())
+    }
+
+    /// As [`Spec::read`]; `notes` gets a sentence for each value that was converted from another program's.
+    pub fn read_noted(file: &Path, notes: &mut Vec<String>) -> Result<Spec, SpecError> {
         let text = read_text(file)?;
         let json = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
-        let spec = if json { Spec::from_json(&text) } else { Spec::from_toml(&text) }?;
+        let spec = if json { Spec::from_json_noted(&text, notes) } else { Spec::from_toml_noted(&text, notes) }?;
         spec.absolute_from(file.parent().unwrap_or(Path::new("")))
     }
 }

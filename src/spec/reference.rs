@@ -63,20 +63,41 @@ that is not an entry sets it back to its default. `--set PATH=VALUE` is a `set`,
 `--set object.vase.material.young_pa=3e4`, `--set world.gravity_m_s2=moon`, `--set camera=auto`.
 ";
 
+const MATERIALS: &str = "
+## Materials, parts and events in a few words
+
+To set `material.kind` keeps what the new kind shares with the old one, an automatic stiffness excepted; to set a preset replaces the whole material.
+
+`young_pa = \"auto\"` of what stands (elastic, muscle, plastic) is four times the self-buckling bound of its most slender part, 5e4 to 1e6 Pa; of what flows
+(viscoplastic, sand, snow) it is what lets its own weight compress it by a hundredth, 1e4 to 1e6 Pa.
+
+Parts are bonded: one body of several materials, without a gap or a contact between them. They are picked in the captured pose, by particles. Where two parts
+overlap the later one has what both claim; a part that holds no particle has no effect; both are said as warnings.
+
+An event does one thing, at `at_s` or `when = \"impact\"`. An impact is looked for at the start of every frame, so that nothing has to be read back inside one: an object
+touches when a particle of it is nearer to the ground, to a collider or to another object's particle than half a cell and half a frame of their motion
+together, and the first frame on which it touches after one on which it touched nothing is the impact. A thing that stands at the start has to leave the ground first.
+A change of material keeps mass, place and speed: the new density is not read. What an event freezes stays until an event releases it.
+";
+
 const SPELLINGS: &str = "
 ## Other spellings that are read
 
-- `material = \"jelly\"` and `material = { preset = \"jelly\", density_kg_m3 = 900 }`; a material without `kind` is elastic.
-- `gravity_m_s2 = \"moon\"`.
-- Genesis's names of an elastic material: `E`, `nu`, `rho`, Lamé's `mu` and `lam` or `lambda` (one of them with `nu`, or both), the models
-  `corotation` and `neohooken`. They are converted to the names above.
+- `material = \"jelly\"` and `material = { preset = \"jelly\", density_kg_m3 = 900 }`; a material without `kind` is elastic. `\"plastic\"` is the stuff, the
+  kind is `{ kind = \"plastic\" }`.
+- `gravity_m_s2 = \"moon\"`, `select = [3, 14, 15]` for `{ ids = [3, 14, 15] }`.
+- Genesis's names, **converted by kind**, which is said as a warning: of solids `E`, `nu`, `rho`, Lamé's `mu` and `lam` or `lambda` (one of them with `nu`, or both),
+  the models `corotation` and `neohooken`; of a plastic `von_mises_yield_stress` (a bound on the norm of the deviator: times √(3/2) in tension); of sand
+  `friction_angle` and `cohesion`; of snow `yield_lower` and `yield_higher` (`theta_c`, `theta_s`); of a rigid body `rho`, `coup_friction`, `coup_restitution`; of a
+  liquid `rho`, `mu` in m²/s (times density), `gamma` in m³/s² (times density times 0.03612: Rayleigh's integral over their pull between neighbours), while
+  `stiffness` and `exponent` are not read: the speed of sound follows from depth.
 - `expect = [\"vase.apex_m > 0.3\"]`.
 - An object without a name takes the scene file's name up to its first dot; events without one become `event1`, `event2`, …
 ";
 
 /// The whole page.
 pub fn markdown() -> String {
-    let mut page = Page { text: HEAD.to_owned(), shapes: Vec::new() };
+    let mut page = Page { text: HEAD.to_owned(), shapes: Vec::new(), said_kinds: false };
     let root = schema::spec();
     page.text.push_str("\n## At the top\n");
     page.table(root);
@@ -91,6 +112,7 @@ pub fn markdown() -> String {
     page.text.push_str(EDITS);
     page.conditions();
     page.presets();
+    page.text.push_str(MATERIALS);
     page.text.push_str(SPELLINGS);
     page.later();
     page.text
@@ -100,6 +122,8 @@ struct Page {
     text: String,
     /// References to shapes that several places use, described once.
     shapes: Vec<&'static str>,
+    /// Whether the kinds of materials have been described.
+    said_kinds: bool,
 }
 
 impl Page {
@@ -119,14 +143,18 @@ impl Page {
         let _ = write!(self.text, "\n{} `{title}`\n\n{about}\n", "#".repeat(level));
         match forms.as_slice() {
             [] => self.table(schema),
-            // "auto" or one table, and materials: the table itself.
+            // "auto" or one table: the table itself.
             [form] => self.table(form),
+            [first, ..] if kind(first).is_some() => return self.kinds(schema),
             _ => self.forms(schema),
         }
         let inner = if forms.len() == 1 { forms[0] } else { schema };
         let path = title.trim_matches(['[', ']']).to_owned();
         for (key, property) in properties(inner) {
-            self.section(&format!("{path}.{key}"), property, property, level + 1);
+            match property["items"].get("$ref") {
+                Some(_) => self.section(&format!("[[{path}.{key}]]"), property, &property["items"], level + 1),
+                None => self.section(&format!("{path}.{key}"), property, property, level + 1),
+            }
         }
     }
 
@@ -135,8 +163,7 @@ impl Page {
         self.line("\n| key | value | default | |\n|---|---|---|---|");
         for (key, property) in properties(schema) {
             let about = text(property, "description").unwrap_or_default();
-            if let Some(constant) = property.get("const") {
-                self.line(&format!("| `{key}` | {} | | |", cell(&inline(constant))));
+            if property.get("const").is_some() {
                 continue;
             }
             let default = match property.get("default") {
@@ -147,6 +174,18 @@ impl Page {
             };
             let unit = diff::unit(key).map(|unit| format!(", {unit}")).unwrap_or_default();
             self.line(&format!("| `{key}` | {}{unit} | {} | {} |", cell(&value(property)), cell(&default), cell(&about)));
+        }
+    }
+
+    /// A table for each kind of a material, the first time that materials are spoken of.
+    fn kinds(&mut self, schema: &'static Value) {
+        if std::mem::replace(&mut self.said_kinds, true) {
+            return self.line("\nAs an object's, below `object.material`.");
+        }
+        for form in alternatives(schema).into_iter().map(resolve) {
+            let (name, about) = (kind(form).unwrap_or_default(), text(form, "description").unwrap_or_default());
+            let _ = write!(self.text, "\n**`kind = \"{name}\"`** {about}\n");
+            self.table(form);
         }
     }
 
@@ -222,10 +261,13 @@ impl Page {
     }
 
     fn presets(&mut self) {
-        self.text.push_str("\n## Presets\n\n| material | Young's modulus, Pa | Poisson's ratio | density, kg/m³ | |\n|---|---|---|---|---|\n");
-        for preset in presets::ELASTIC {
-            let numbers = [preset.young_pa, preset.poisson, preset.density_kg_m3].map(super::number).join(" | ");
-            self.line(&format!("| `{}` | {numbers} | {} |", preset.name, preset.source));
+        self.text.push_str("\n## Presets\n\n| stuff | kind and parameters | |\n|---|---|---|\n");
+        for preset in presets::MATERIALS {
+            let fields = serde_json::to_value(&preset.material).unwrap_or_default();
+            let ours = super::Material::of_kind(preset.material.kind()).and_then(|default| serde_json::to_value(default).ok()).unwrap_or_default();
+            let pairs = properties_of(&fields).filter(|(key, value)| *key == "kind" || ours.get(key.as_str()) != Some(value));
+            let pairs: Vec<String> = pairs.map(|(key, value)| format!("{key} = {}", inline(value))).collect();
+            self.line(&format!("| `{}` | `{}` | {} |", preset.name, pairs.join(", "), preset.source));
         }
         self.text.push_str("\n| gravity | m/s² |\n|---|---|\n");
         for preset in presets::GRAVITY {
@@ -239,6 +281,11 @@ impl Page {
             self.line(&format!("| {what} | `{}` |", words.replace(", ", "`, `")));
         }
     }
+}
+
+/// The word by which a form of a tagged choice is chosen.
+fn kind(form: &Value) -> Option<&str> {
+    properties(form).find_map(|(_, property)| property.get("const")?.as_str())
 }
 
 /// What a property takes: a table that has a section of its own is only named.
@@ -262,6 +309,10 @@ fn resolve_reference(reference: &str) -> &'static Value {
 
 fn properties(schema: &Value) -> impl Iterator<Item = (&String, &Value)> {
     schema["properties"].as_object().into_iter().flatten()
+}
+
+fn properties_of(table: &Value) -> impl Iterator<Item = (&String, &Value)> {
+    table.as_object().into_iter().flatten()
 }
 
 fn alternatives(schema: &Value) -> Vec<&Value> {

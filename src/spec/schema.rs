@@ -19,6 +19,9 @@ pub fn paths() -> &'static [String] {
     PATHS.get_or_init(|| {
         let mut paths = Vec::new();
         collect(spec(), "", &mut paths);
+        // A parameter that several kinds of material share is one path.
+        let mut seen = std::collections::BTreeSet::new();
+        paths.retain(|path| seen.insert(path.clone()));
         paths
     })
 }

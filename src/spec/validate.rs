@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 
 use super::error::{SpecError, SpecErrorKind};
 use super::expression::{Fault, Kind, Program, parse};
-use super::{Auto, ColliderShape, Drive, Force, Motor, PlaneShape, Region, Spec, Until, Vortex, canonical::number, expect, limits};
+use super::{
+    Activation, Auto, ColliderShape, Drive, Event, Force, Material, Motor, Region, Spec, Until, Vortex, canonical::number, expect, later, limits,
+};
 
 /// Checks a spec whose structure and ranges are already right.
 pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
@@ -19,6 +21,16 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
     unique("event", spec.events.iter().map(|event| event.name.as_str()))?;
     unique("expect", spec.expectations.iter().map(|expectation| expectation.that.as_str()))?;
 
+    for object in &spec.objects {
+        let place = format!("object.{}", object.name);
+        material(&object.material, &place)?;
+        unique(&format!("{place}.part"), object.parts.iter().map(|part| part.name.as_str()))?;
+        for part in &object.parts {
+            let place = format!("{place}.part.{}", part.name);
+            material(&part.material, &place)?;
+            region(&part.region, &place)?;
+        }
+    }
     let objects: Vec<&str> = spec.objects.iter().map(|object| object.name.as_str()).collect();
     for pin in &spec.pins {
         let place = format!("pin.{}", pin.name);
@@ -31,13 +43,11 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
             let message = format!("at {} s it is already {} m away", number(first[0]), number(first[1].hypot(first[2]).hypot(first[3])));
             return Err(SpecError::new(SpecErrorKind::Conflict, format!("{place}.path"), message).allowed("[from_s, 0, 0, 0] first, or a later time"));
         }
-        if let Region::HalfSpace(plane) = &pin.region {
-            direction(&format!("{place}.region.half_space"), plane)?;
-        }
+        region(&pin.region, &place)?;
     }
     for collider in &spec.colliders {
         if let ColliderShape::Plane(plane) = &collider.shape {
-            direction(&format!("collider.{}.shape.plane", collider.name), plane)?;
+            heading(&format!("collider.{}.shape.plane.normal", collider.name), &plane.normal, "a normal")?;
         }
     }
     for force in &spec.forces {
@@ -50,10 +60,7 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
     for event in &spec.events {
         let place = format!("event.{}", event.name);
         known_object(&place, &event.object, &objects)?;
-        if event.push_m_s.is_some() == event.velocity_m_s.is_some() {
-            let message = if event.push_m_s.is_some() { "two things at once" } else { "nothing happens" };
-            return Err(SpecError::new(SpecErrorKind::Conflict, place, message).allowed("push_m_s or velocity_m_s, one of them"));
-        }
+        self::event(spec, event, &place)?;
     }
     if let Auto::Value(camera) = &spec.camera
         && camera.eye_m == camera.target_m
@@ -65,6 +72,84 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
     }
     Ok(())
 }
+
+/// What no range says of a material, and whether its law is built.
+fn material(material: &Material, owner: &str) -> Result<(), SpecError> {
+    let place = format!("{owner}.material");
+    if let Some((key, what)) = later::material(material) {
+        return Err(later::error(&format!("{place}.{key}"), what, &later::built_kinds()));
+    }
+    let Material::Muscle(muscle) = material else { return Ok(()) };
+    heading(&format!("{place}.fibre"), &muscle.fibre, "a direction")?;
+    let Activation::Curve(points) = &muscle.activation else { return Ok(()) };
+    let refuse = |message: String| {
+        Err(SpecError::new(SpecErrorKind::Range, format!("{place}.activation"), message)
+            .allowed("[time_s, activation] pairs, times rising, activation 0 to 1"))
+    };
+    for pair in points.windows(2) {
+        if pair[1][0] <= pair[0][0] {
+            return refuse(format!("{} s is not after {} s", number(pair[1][0]), number(pair[0][0])));
+        }
+    }
+    match points.iter().find(|[time_s, value]| !(0.0..=limits::TIME_S).contains(time_s) || !(0.0..=1.0).contains(value)) {
+        Some(point) => refuse(format!("[{}, {}] is out of range", number(point[0]), number(point[1]))),
+        None => Ok(()),
+    }
+}
+
+fn region(region: &Region, owner: &str) -> Result<(), SpecError> {
+    match region {
+        Region::HalfSpace(plane) => heading(&format!("{owner}.region.half_space.normal"), &plane.normal, "a normal"),
+        _ => Ok(()),
+    }
+}
+
+/// One time and one effect, on something that can have it.
+fn event(spec: &Spec, event: &Event, place: &str) -> Result<(), SpecError> {
+    let refuse = |message: String, allowed: &str| Err(SpecError::new(SpecErrorKind::Conflict, place, message).allowed(allowed));
+    match (event.at_s, event.when) {
+        (Some(_), Some(_)) => return refuse("at_s and when both say when".to_owned(), "one of them"),
+        (None, None) => return refuse("it never happens".to_owned(), "at_s, or when = \"impact\""),
+        _ => {}
+    }
+    match event.effects().as_slice() {
+        [] => return refuse("nothing happens".to_owned(), EFFECTS),
+        [_] => {}
+        [first, second, ..] => return refuse(format!("{first} and {second} at once"), "one effect for each event; two events may have one time"),
+    }
+    if let Some((key, what)) = later::event(event) {
+        return Err(later::error(&format!("{place}.{key}"), what, "at_s with push_m_s or velocity_m_s"));
+    }
+    if let Some(changed) = &event.material {
+        material(changed, place)?;
+    }
+    let Some(object) = spec.objects.iter().find(|object| object.name == event.object) else { return Ok(()) };
+    if let Some(part) = &event.part {
+        if !object.parts.iter().any(|known| known.name == *part) {
+            return Err(SpecError::unknown(format!("{place}.part"), "part", part, object.parts.iter().map(|part| part.name.as_str())));
+        }
+        if event.material.is_none() && event.weaken.is_none() {
+            return refuse(format!("{} acts on the whole object", event.effects().join("")), "part with material or weaken");
+        }
+    }
+    let others = || spec.events.iter().filter(|other| other.object == event.object);
+    if event.weaken.is_some() {
+        let becomes = others().filter_map(|other| other.material.as_ref());
+        let mut materials = std::iter::once(&object.material).chain(object.parts.iter().map(|part| &part.material)).chain(becomes);
+        if !materials.any(|material| material.young_pa().is_some()) {
+            return refuse(
+                format!("{} has no stiffness that could weaken", object.material.kind()),
+                "an event on something elastic, plastic, of sand or of snow",
+            );
+        }
+    }
+    if event.release && !others().any(|other| other.freeze) && !spec.pins.iter().any(|pin| pin.object == event.object) {
+        return refuse(format!("nothing holds {}", event.object), "a pin on it, or an event that freezes it");
+    }
+    Ok(())
+}
+
+const EFFECTS: &str = "push_m_s, velocity_m_s, material, weaken, freeze or release, one of them";
 
 fn unique<'a>(list: &str, names: impl Iterator<Item = &'a str>) -> Result<(), SpecError> {
     let mut seen = BTreeSet::new();
@@ -165,10 +250,7 @@ fn points(place: &str, path: &[[f64; 4]]) -> Result<(), SpecError> {
     Ok(())
 }
 
-fn direction(place: &str, plane: &PlaneShape) -> Result<(), SpecError> {
-    heading(&format!("{place}.normal"), &plane.normal, "a normal")
-}
-
+/// A vector that says where to, whatever its length.
 fn heading(place: &str, vector: &[f64; 3], what: &str) -> Result<(), SpecError> {
     let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
     if (1e-6..1e6).contains(&length) {

@@ -2,14 +2,14 @@
 //! here may change what a stage makes.
 
 use crate::gpu::Gpu;
-use crate::spec::{Auto, Event, Force, Material, Object, Pin, Spec, Until};
+use crate::spec::{Event, Force, Material, Muscle, Object, Pin, Region, Spec, Until};
 use crate::world::Resolved;
 use crate::{proxy, render, skin, solver};
 use serde::Serialize;
 use serde_json::json;
 
 /// Changed whenever the meaning of any key does.
-const KEY_FORMAT: u32 = 1;
+const KEY_FORMAT: u32 = 2;
 /// Version of reading, turning, pruning and selecting.
 const SCENE_VERSION: u32 = 1;
 /// Version of choosing neighbours and weights.
@@ -54,7 +54,8 @@ fn device(gpu: &Gpu) -> serde_json::Value {
 
 /// What a prestress depends on: the solid, what it is made of, what it stands on, and gravity.
 pub(super) fn prestress(spec: &Spec, keys: &StillKeys, resolved: &Resolved, gpu: &Gpu) -> String {
-    let bodies: Vec<_> = spec.objects.iter().map(|o| (&o.material, o.rest)).collect();
+    // Of muscles only how hard they pull at the start.
+    let bodies: Vec<_> = spec.objects.iter().map(|o| (pieces(o, 0.0), o.rest)).collect();
     let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s <= 0.0).map(|p| (&p.object, &p.region)).collect();
     hash(
         "prestress",
@@ -67,12 +68,27 @@ pub(super) fn prestress(spec: &Spec, keys: &StillKeys, resolved: &Resolved, gpu:
 /// An event at exactly `to_s` is later: it takes effect at that boundary, after the state there was kept.
 pub(super) fn motion(spec: &Spec, prestress: &str, frames: std::ops::RangeInclusive<u32>, to_s: f64) -> String {
     let starts: Vec<_> = spec.objects.iter().map(start).collect();
-    let mut events: Vec<&Event> = spec.events.iter().filter(|e| e.at_s < to_s).collect();
-    events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
-    let events: Vec<_> = events.iter().map(|e| (e.at_s, &e.object, e.push_m_s, e.velocity_m_s)).collect();
+    let muscles: Vec<_> = spec.objects.iter().flat_map(|o| pieces(o, to_s)).filter(|(_, m)| matches!(m, Material::Muscle(_))).collect();
+    // What waits for an impact may happen at any time, as far as a key can tell.
+    let mut events: Vec<&Event> = spec.events.iter().filter(|e| e.at_s.is_none_or(|at_s| at_s < to_s)).collect();
+    events.sort_by(|a, b| a.at_s.unwrap_or(f64::INFINITY).total_cmp(&b.at_s.unwrap_or(f64::INFINITY)));
+    let events: Vec<_> = events.into_iter().map(|e| Event { name: String::new(), ..e.clone() }).collect();
     let forces: Vec<_> = spec.forces.iter().filter(|f| f.from_s < to_s).map(|f| force_until(f, to_s)).collect();
     let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s < to_s).map(|p| pin_until(p, to_s)).collect();
-    hash("motion", &json!([SEGMENT_VERSION, prestress, spec.seed, spec.time.fps, starts, events, forces, pins, frames.start(), frames.end()]))
+    hash(
+        "motion",
+        &json!([SEGMENT_VERSION, prestress, spec.seed, spec.time.fps, starts, muscles, events, forces, pins, frames.start(), frames.end()]),
+    )
+}
+
+/// Regions and materials of an object, of muscles what is known of their activation at a time.
+fn pieces(object: &Object, until_s: f64) -> Vec<(Option<(&str, &Region)>, Material)> {
+    let parts = object.parts.iter().map(|part| (Some((part.name.as_str(), &part.region)), &part.material));
+    let known = |material: &Material| match material {
+        Material::Muscle(muscle) => Material::Muscle(Muscle { activation: muscle.activation.until(until_s), ..muscle.clone() }),
+        other => other.clone(),
+    };
+    std::iter::once((None, &object.material)).chain(parts).map(|(part, material)| (part, known(material))).collect()
 }
 
 fn start(object: &Object) -> serde_json::Value {
@@ -123,10 +139,4 @@ pub(super) fn picture(spec: &Spec, motion: &str, keys: &StillKeys, resolved: &Re
 
 fn text_hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
-}
-
-/// Whether an object's stiffness was left to the program.
-pub(super) fn young_is_auto(material: &Material) -> bool {
-    let Material::Elastic(elastic) = material;
-    elastic.young_pa == Auto::Auto
 }

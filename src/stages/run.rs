@@ -48,7 +48,7 @@ pub(super) fn run(
     let bound = engine.bound(spec, &ready, &solids.value)?;
     seconds.insert(StageName::Bind, clock.elapsed().as_secs_f64());
 
-    let matter = matter(spec, &ready.prepared.value, &solids.value);
+    let matter = matter(spec, &ready.prepared.value, &solids.value)?;
     let mut warnings = warnings(&ready, &solids.value, &matter);
     let motion = Motion::new(engine, &ready, &matter)?;
     if !motion.keep_motion {

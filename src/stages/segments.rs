@@ -158,7 +158,7 @@ mod tests {
     fn an_event_changes_only_segments_that_end_after_it() {
         let before = spec();
         let mut after = before.clone();
-        after.events.push(Event { name: "push".into(), at_s: 1.2, object: "vase".into(), push_m_s: Some([1.0, 0.0, 0.0]), velocity_m_s: None });
+        after.events.push(Event { push_m_s: Some([1.0, 0.0, 0.0]), ..Event::at("push", "vase", 1.2) });
         let (a, b) = (keys_of(&before, 101), keys_of(&after, 101));
         let segments = layout(&before, "p", 101);
         for (index, segment) in segments.iter().enumerate() {

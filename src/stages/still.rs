@@ -6,7 +6,7 @@ use super::{Action, EngineError, pack};
 use crate::proxy::{self, ProxyRequest, Solid, Stance};
 use crate::scene::{self, Format, Gaussians, Loaded, SceneFrame};
 use crate::skin::{self, Bound};
-use crate::spec::{Auto, Axis, Spec};
+use crate::spec::{Auto, Axis, Select, Spec};
 use crate::store::Store;
 use crate::world::{Prepared, Resolved};
 use glam::Vec3;
@@ -87,7 +87,8 @@ fn builtin(seed: u64) -> Loaded {
         hash.update(array);
     }
     hash.update(bytemuck::cast_slice(&gaussians.opacity)).update(bytemuck::cast_slice(&gaussians.sh));
-    Loaded { gaussians, format: Format::Ply, warnings: Vec::new(), blake3: hash.finalize().to_hex().to_string(), stated_up: None }
+    let place = (0..gaussians.len() as u32).collect();
+    Loaded { gaussians, place, format: Format::Ply, warnings: Vec::new(), blake3: hash.finalize().to_hex().to_string(), stated_up: None }
 }
 
 /// Key and result of the scene stage.
@@ -140,11 +141,12 @@ fn divide(loaded: &Loaded, spec: &Spec, floater: &[u8], up: Axis) -> Result<Prep
     let world = loaded.gaussians.to_world(&frame);
     let order = world.morton_order();
     let gaussians = world.subset(&order);
+    let place: Vec<u32> = order.iter().map(|&i| loaded.place[i as usize]).collect();
     let floater: Vec<bool> = order.iter().map(|&i| floater[i as usize] != 0).collect();
     let mut object_of = vec![u32::MAX; gaussians.len()];
     for (index, object) in spec.objects.iter().enumerate() {
         let mut any = false;
-        for member in scene::select(&gaussians, &object.select) {
+        for member in scene::select(&gaussians, &place, &object.select) {
             let owner = &mut object_of[member as usize];
             // Where objects overlap, the first one named keeps the Gaussian.
             if *owner == u32::MAX {
@@ -162,6 +164,19 @@ fn divide(loaded: &Loaded, spec: &Spec, floater: &[u8], up: Axis) -> Result<Prep
     if spec.scene.up == Auto::Auto {
         let guess = loaded.up();
         warnings.extend((!guess.why.is_empty()).then(|| format!("up axis taken as {}: {}", axis_name(up), guess.why)));
+    }
+    let known: std::collections::BTreeSet<u32> = loaded.place.iter().copied().collect();
+    for object in &spec.objects {
+        let Select::Ids(ids) = &object.select else { continue };
+        let unknown = ids.iter().filter(|id| !known.contains(id)).count();
+        if unknown > 0 {
+            warnings.push(format!(
+                "{}: {unknown} of its {} ids are of no Gaussian that was read; the file has {}",
+                object.name,
+                ids.len(),
+                known.len()
+            ));
+        }
     }
     let ground_m = spec.world.ground.height_m.unwrap_or(lowest);
     Ok(Prepared { gaussians, world_from_sh: frame.quat(), object_of, floater, up, ground_m, warnings })

@@ -2,7 +2,7 @@
 
 use super::engine::Ready;
 use super::segments::SolverTotals;
-use super::{ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, StageName, SubstepRange, keys, lookup};
+use super::{ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, StageName, SubstepRange, lookup};
 use crate::gpu::Gpu;
 use crate::render::View;
 use crate::solver::Advance;
@@ -83,11 +83,7 @@ pub(super) fn metrics(
 /// Values that were `"auto"`, by path.
 fn resolved(spec: &Spec, ready: &Ready, matter: &Matter) -> serde_json::Map<String, serde_json::Value> {
     let mut values = serde_json::Map::new();
-    for (object, young_pa) in spec.objects.iter().zip(&matter.young_pa) {
-        if keys::young_is_auto(&object.material) {
-            values.insert(format!("object.{}.material.young_pa", object.name), (*young_pa).into());
-        }
-    }
+    values.extend(matter.young_auto.iter().map(|(path, young_pa)| (path.clone(), (*young_pa).into())));
     values.extend(ready.resolved.report(spec));
     let c = &ready.resolved.camera;
     let point = |p: [f64; 3]| glam::Vec3::from(p.map(|v| v as f32));

@@ -23,7 +23,7 @@ fn seen_moving(spec: &Spec, base: &Path, frames: &[u32]) -> Vec<f32> {
     let solids = engine.solids(spec, &ready).unwrap().value;
     let bound = engine.bound(spec, &ready, &solids).unwrap().value;
     let prepared = &ready.prepared.value;
-    let matter = matter(spec, prepared, &solids);
+    let matter = matter(spec, prepared, &solids).unwrap();
     let (gpu, stop) = (Gpu::shared_for_tests().unwrap(), Stop::default());
     let mut world = World::new(&gpu, spec, &matter, &ready.resolved).unwrap();
     world.prestress(spec, &stop, &mut |_| {}).unwrap();
@@ -70,7 +70,7 @@ fn a_twig_thinner_than_the_grid_sees_stands_as_captured() {
     scene::write(&folder.path().join("twig.ply"), &twig()).unwrap();
     let mut spec = Spec::of_scene("twig.ply");
     spec.scene.up = Auto::Value(Axis::PlusZ);
-    let Material::Elastic(elastic) = &mut spec.objects[0].material;
+    let Material::Elastic(elastic) = &mut spec.objects[0].material else { panic!("elastic") };
     elastic.young_pa = Auto::Value(2e5);
     spec.solver.cells_across = Auto::Value(10);
     let moved = seen_moving(&spec, folder.path(), &[10, 25]);

@@ -49,7 +49,7 @@ impl World {
     pub fn new(gpu: &Gpu, spec: &Spec, matter: &Matter, resolved: &Resolved) -> Result<World, SolverError> {
         let solver = Solver::new(gpu, settings(spec, matter, resolved), &matter.particles)?;
         let index_of = |name: &str| spec.objects.iter().position(|o| o.name == name);
-        let mut events: Vec<TimedEvent> = spec.events.iter().filter_map(|e| Some(timed(e, index_of(&e.object)? as u32))).collect();
+        let mut events: Vec<TimedEvent> = spec.events.iter().filter_map(|e| timed(e, index_of(&e.object)? as u32)).collect();
         events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
         Ok(World { gpu: gpu.clone(), solver, events, fps: spec.time.fps, frame: 0 })
     }
@@ -152,8 +152,8 @@ impl World {
     }
 }
 
-fn timed(event: &Event, object: u32) -> TimedEvent {
-    TimedEvent { at_s: event.at_s, object, push_m_s: event.push_m_s.map(vec3), velocity_m_s: event.velocity_m_s.map(vec3) }
+fn timed(event: &Event, object: u32) -> Option<TimedEvent> {
+    Some(TimedEvent { at_s: event.at_s?, object, push_m_s: event.push_m_s.map(vec3), velocity_m_s: event.velocity_m_s.map(vec3) })
 }
 
 fn vec3(value: [f64; 3]) -> Vec3 {

@@ -82,13 +82,13 @@ pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, ground_m: f64, u
     let drives = Drives::of(spec, thing, facts);
     let mut body = Body { at: DVec3::from(thing.offset_m), velocity: DVec3::from(thing.velocity_m_s) };
     let mut events: Vec<_> = spec.events.iter().filter(|e| e.object == thing.name).collect();
-    events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+    events.sort_by(|a, b| a.at_s.unwrap_or(until_s).total_cmp(&b.at_s.unwrap_or(until_s)));
     let mut path = Path { points: vec![body.at], rests_s: 0.0 };
     let mut now = 0.0;
     let ground = Ground { spec, facts, ground_m, gravity };
-    for event in events {
-        travel(&mut body, now, event.at_s.min(until_s), &ground, &drives, &mut path);
-        now = event.at_s;
+    for (event, at_s) in events.into_iter().filter_map(|event| Some((event, event.at_s?))) {
+        travel(&mut body, now, at_s.min(until_s), &ground, &drives, &mut path);
+        now = at_s;
         body.velocity = event.velocity_m_s.map_or(body.velocity, DVec3::from) + event.push_m_s.map_or(DVec3::ZERO, DVec3::from);
     }
     travel(&mut body, now, until_s.max(now), &ground, &drives, &mut path);
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn a_late_push_lengthens_the_film() {
         let mut spec = spec();
-        spec.events.push(Event { name: "push".into(), at_s: 2.5, object: "vase".into(), push_m_s: Some([1.0, 0.0, 0.0]), velocity_m_s: None });
+        spec.events.push(Event { push_m_s: Some([1.0, 0.0, 0.0]), ..Event::at("push", "vase", 2.5) });
         let duration = duration_s(&spec, &facts(), 0.0);
         assert!(duration > 3.0 && duration <= 8.0, "{duration}");
         assert!((duration * 50.0).fract().abs() < 1e-6);

@@ -2,9 +2,11 @@
 
 use super::Prepared;
 use super::measure::Bodies;
-use crate::proxy::{self, Solid};
-use crate::solver::{Particles, Substance};
-use crate::spec::{Auto, Material, Rest, Spec};
+use super::region::{self, bounds};
+use super::stuff::{Stuff, Yardstick};
+use crate::proxy::{self, Solid, YoungAuto};
+use crate::solver::{Particles, SolverError};
+use crate::spec::{Auto, Material, Object, Rest, Spec};
 use glam::Vec3;
 
 /// Particles of all objects, one object after another, and what was decided about them.
@@ -14,8 +16,12 @@ pub struct Matter {
     pub particles: Particles,
     /// What the measures need.
     pub bodies: Bodies,
-    /// Young's modulus of each object, chosen where the spec says `"auto"`.
-    pub young_pa: Vec<f64>,
+    /// Piece of its object that each particle belongs to: 0 is the object's own material, 1 its first part's.
+    pub piece: Vec<u16>,
+    /// Young's moduli that the spec left to the program, by path.
+    pub young_auto: Vec<(String, f64)>,
+    /// What each event of the spec makes of its object, in the spec's order; none where it changes no material.
+    pub changes: Vec<Option<Stuff>>,
     /// Centre of mass of each object in the captured pose.
     pub centre_m: Vec<Vec3>,
     /// Inner particles over all, of each object.
@@ -28,8 +34,8 @@ pub struct Matter {
     pub notes: Vec<String>,
 }
 
-/// Gives each object's solid its material, one `Solid` for each object of the spec.
-pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Matter {
+/// Gives each object's solid its materials, one `Solid` for each object of the spec.
+pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Result<Matter, SolverError> {
     let mut matter = Matter {
         particles: Particles::default(),
         bodies: Bodies {
@@ -39,7 +45,9 @@ pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Matter {
             colliders: spec.colliders.clone(),
             ground_m: prepared.ground_m,
         },
-        young_pa: Vec::new(),
+        piece: Vec::new(),
+        young_auto: Vec::new(),
+        changes: vec![None; spec.events.len()],
         centre_m: Vec::new(),
         fill_ratio: Vec::new(),
         gaussians: Vec::new(),
@@ -47,54 +55,134 @@ pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Matter {
         notes: Vec::new(),
     };
     for (index, solid) in solids.iter().enumerate() {
-        add(&mut matter, spec, prepared, index, solid);
+        add(&mut matter, spec, prepared, index, solid)?;
     }
-    matter
+    Ok(matter)
 }
 
-fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, solid: &Solid) {
+/// The piece that each particle belongs to. Of parts that overlap the later one has what both claim.
+fn pieces(object: &Object, points: &[Vec3], warnings: &mut Vec<String>) -> Vec<u16> {
+    let whole = bounds(points);
+    let mut piece = vec![0u16; points.len()];
+    for (index, part) in object.parts.iter().enumerate() {
+        let mut taken = vec![0usize; index + 1];
+        let mut any = false;
+        for (owner, point) in piece.iter_mut().zip(points) {
+            if region::holds(&part.region, *point, whole) {
+                taken[usize::from(*owner)] += 1;
+                *owner = index as u16 + 1;
+                any = true;
+            }
+        }
+        if !any {
+            warnings.push(format!("{}: part {} holds no particle: its region is empty, or thinner than a cell", object.name, part.name));
+        }
+        for (other, count) in object.parts.iter().zip(&taken[1..]).filter(|(_, count)| **count > 0) {
+            let (name, later) = (&other.name, &part.name);
+            warnings.push(format!("{}: parts {name} and {later} overlap: {later}, the later one, has the {count} particles of both", object.name));
+        }
+    }
+    piece
+}
+
+fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, solid: &Solid) -> Result<(), SolverError> {
     let object = &spec.objects[index];
-    let Material::Elastic(elastic) = object.material;
-    let density = elastic.density_kg_m3;
     let members = prepared.gaussians.subset(&prepared.members(index as u32, false));
-    let auto = proxy::young_auto(&solid.stance, density);
-    let count = solid.position_m.len();
-    let young_pa = elastic.young_pa.unwrap_or(auto.value_pa);
+    let auto = proxy::young_auto(&solid.stance, object.material.density_kg_m3());
+    let (low, high) = bounds(&solid.position_m);
+    let yard = Yardstick { standing_pa: auto.value_pa, density_kg_m3: object.material.density_kg_m3(), height_m: f64::from(high.z - low.z) };
+    let own = (format!("object.{}", object.name), &object.material);
+    let parts = object.parts.iter().map(|part| (format!("object.{}.part.{}", object.name, part.name), &part.material));
+    let mut stuffs = Vec::new();
+    for (path, material) in std::iter::once(own).chain(parts) {
+        stuffs.push(resolve(matter, &yard, material, &path)?);
+    }
+    for (number, event) in spec.events.iter().enumerate().filter(|(_, event)| event.object == object.name) {
+        if let Some(material) = &event.material {
+            matter.changes[number] = Some(resolve(matter, &yard, material, &format!("event.{}", event.name))?);
+        }
+    }
     let standing = object.rest == Rest::AsCaptured;
-    if elastic.young_pa == Auto::Auto {
+    warn_of_softness(matter, object, &auto, stuffs[0].young_pa);
+
+    let piece = pieces(object, &solid.position_m, &mut matter.warnings);
+    let count = solid.position_m.len();
+    // Places that need more to stand keep their share over the rest when the whole is made softer or stiffer.
+    let nearest = proxy::nearest(&members, &solid.position_m);
+    let share = |g: u32, material: &Material| if standing && material.stands() { auto.local[g as usize] / auto.value_pa as f32 } else { 1.0 };
+    let start = matter.bodies.mass_kg.len();
+    let particles = &mut matter.particles;
+    let first_row = particles.substances.len() as u16;
+    particles.substances.extend(stuffs.iter().map(|stuff| stuff.substance.clone()));
+    for (i, &p) in piece.iter().enumerate() {
+        let stuff = &stuffs[usize::from(p)];
+        let material = if p == 0 { &object.material } else { &object.parts[usize::from(p) - 1].material };
+        particles.density_kg_m3.push(stuff.density_kg_m3 as f32);
+        particles.young_pa.push(stuff.young_pa as f32 * share(nearest[i], material));
+        particles.poisson.push(stuff.poisson as f32);
+        particles.substance.push(first_row + p);
+    }
+    particles.position_m.extend(&solid.position_m);
+    particles.velocity_m_s.extend(std::iter::repeat_n(Vec3::ZERO, count));
+    particles.volume_m3.extend(&solid.volume_m3);
+    particles.object.extend(std::iter::repeat_n(index as u32, count));
+    let mass: Vec<f32> = solid.volume_m3.iter().zip(&particles.density_kg_m3[start..]).map(|(v, density)| v * density).collect();
+    let total: f64 = mass.iter().map(|&m| f64::from(m)).sum();
+    let moment: glam::DVec3 = solid.position_m.iter().zip(&mass).map(|(p, &m)| p.as_dvec3() * f64::from(m)).sum();
+    matter.bodies.ranges.push(start..start + count);
+    matter.bodies.mass_kg.extend(mass);
+    matter.bodies.volume_m3.extend(&solid.volume_m3);
+    matter.piece.extend(piece);
+    matter.centre_m.push((moment / total.max(f64::MIN_POSITIVE)).as_vec3());
+    matter.fill_ratio.push(f64::from(solid.fill_ratio));
+    matter.gaussians.push(prepared.members(index as u32, true).len());
+    Ok(())
+}
+
+/// A material as the solver takes it; an automatic modulus is written down.
+fn resolve(matter: &mut Matter, yard: &Yardstick, material: &Material, owner: &str) -> Result<Stuff, SolverError> {
+    let stuff = yard.stuff(material)?;
+    if material.young_pa() == Some(Auto::Auto) {
+        matter.young_auto.push((format!("{owner}.material.young_pa"), stuff.young_pa));
+    }
+    Ok(stuff)
+}
+
+/// Says where an object that stands as captured cannot: an automatic modulus says so of itself.
+fn warn_of_softness(matter: &mut Matter, object: &Object, auto: &YoungAuto, young_pa: f64) {
+    if !object.material.stands() {
+        return;
+    }
+    if object.material.young_pa() == Some(Auto::Auto) {
         matter.warnings.extend(auto.warnings.iter().map(|w| format!("{}: {w}", object.name)));
         matter.notes.extend(auto.notes.iter().map(|n| format!("{}: {n}", object.name)));
-    } else if standing && young_pa < auto.value_pa / 4.0 {
+    } else if object.rest == Rest::AsCaptured && young_pa < auto.value_pa / 4.0 {
         matter.warnings.push(format!(
             "{}: at {young_pa:.3e} Pa its most slender part cannot carry its own weight and will sag; it stands by itself from about {:.1e} Pa",
             object.name,
             auto.value_pa / 4.0
         ));
     }
-    // Parts that need more to stand keep their share over the rest when the whole is made softer or stiffer.
-    let nearest = proxy::nearest(&members, &solid.position_m);
-    let share = |g: u32| if standing { auto.local[g as usize] / auto.value_pa as f32 } else { 1.0 };
-    let young_local = nearest.iter().map(|&g| young_pa as f32 * share(g));
-    let start = matter.bodies.mass_kg.len();
-    let particles = &mut matter.particles;
-    particles.position_m.extend(&solid.position_m);
-    particles.velocity_m_s.extend(std::iter::repeat_n(Vec3::ZERO, count));
-    particles.volume_m3.extend(&solid.volume_m3);
-    particles.density_kg_m3.extend(std::iter::repeat_n(density as f32, count));
-    particles.young_pa.extend(young_local);
-    particles.poisson.extend(std::iter::repeat_n(elastic.poisson as f32, count));
-    let row = particles.substances.len() as u16;
-    particles.substances.push(Substance::Elastic(elastic.model));
-    particles.substance.extend(std::iter::repeat_n(row, count));
-    particles.object.extend(std::iter::repeat_n(index as u32, count));
-    let mass: Vec<f32> = solid.volume_m3.iter().map(|v| v * density as f32).collect();
-    let total: f64 = mass.iter().map(|&m| f64::from(m)).sum();
-    let moment: glam::DVec3 = solid.position_m.iter().zip(&mass).map(|(p, &m)| p.as_dvec3() * f64::from(m)).sum();
-    matter.bodies.ranges.push(start..start + count);
-    matter.bodies.mass_kg.extend(mass);
-    matter.bodies.volume_m3.extend(&solid.volume_m3);
-    matter.young_pa.push(young_pa);
-    matter.centre_m.push((moment / total.max(f64::MIN_POSITIVE)).as_vec3());
-    matter.fill_ratio.push(f64::from(solid.fill_ratio));
-    matter.gaussians.push(prepared.members(index as u32, true).len());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spec::{Part, Region};
+
+    #[test]
+    fn later_parts_win_and_overlap_and_emptiness_are_said() {
+        let part = |name: &str, region| Part { name: name.to_owned(), region, material: Material::default() };
+        let mut object = Object::new("vase");
+        object.parts = vec![part("flowers", Region::Above(0.5)), part("waist", Region::Above(0.25)), part("sky", Region::Above(1.0))];
+        object.parts.push(part("nothing", Region::Sphere(crate::spec::SphereShape { centre_m: [9.0; 3], radius_m: 1.0 })));
+        let points: Vec<Vec3> = (0..=8).map(|i| Vec3::Z * i as f32).collect();
+        let mut warnings = Vec::new();
+        assert_eq!(pieces(&object, &points, &mut warnings), [0, 0, 2, 2, 2, 2, 2, 2, 3]);
+        let said = warnings.join("\n");
+        assert!(
+            said.contains("flowers and waist overlap: waist, the later one, has the 5 particles") && said.contains("part nothing holds no particle"),
+            "{said}"
+        );
+    }
 }

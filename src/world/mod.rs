@@ -9,11 +9,14 @@ mod facts;
 mod figure;
 pub mod measure;
 mod prepared;
+mod region;
 mod resolve;
 mod settings;
+mod stuff;
 
 pub use alive::{Step, TimedEvent, World};
 pub use facts::{Facts, ObjectFacts};
 pub use figure::Figure;
 pub use prepared::{Prepared, support_below};
 pub use resolve::{Resolved, resolve};
+pub use stuff::Stuff;

@@ -3,7 +3,7 @@
 use super::{Facts, ObjectFacts};
 use crate::scene::Gaussians;
 use crate::spec::{Axis, Camera, Collider, ColliderShape, Spec};
-use glam::{Quat, Vec3};
+use glam::{DVec2, DVec3, Quat, Vec3};
 
 /// The scene of one spec in the captured pose. World frame, metres.
 #[derive(Clone, Debug)]
@@ -80,14 +80,54 @@ fn top_at(shape: &ColliderShape, x: f64, y: f64) -> Option<f64> {
             let inside = (x - b.centre_m[0]).abs() <= b.size_m[0] / 2.0 && (y - b.centre_m[1]).abs() <= b.size_m[1] / 2.0;
             inside.then_some(b.centre_m[2] + b.size_m[2] / 2.0)
         }
-        ColliderShape::Sphere(s) => {
-            let (dx, dy) = (x - s.centre_m[0], y - s.centre_m[1]);
-            let rise = s.radius_m * s.radius_m - dx * dx - dy * dy;
-            (rise >= 0.0).then(|| s.centre_m[2] + rise.sqrt())
+        ColliderShape::Sphere(s) => ball_top(DVec3::from(s.centre_m), s.radius_m, x, y),
+        ColliderShape::Capsule(c) => {
+            let (from, to) = (DVec3::from(c.from_m), DVec3::from(c.to_m));
+            let ends = [ball_top(from, c.radius_m, x, y), ball_top(to, c.radius_m, x, y)];
+            ends.into_iter().flatten().chain(rod_top(from, to, c.radius_m, x, y)).reduce(f64::max)
         }
         ColliderShape::Plane(p) => {
             let [nx, ny, nz] = p.normal;
             (nz > 1e-6).then(|| p.point_m[2] - (nx * (x - p.point_m[0]) + ny * (y - p.point_m[1])) / nz)
         }
+    }
+}
+
+fn ball_top(centre: DVec3, radius: f64, x: f64, y: f64) -> Option<f64> {
+    let rise = radius * radius - (DVec2::new(x, y) - centre.truncate()).length_squared();
+    (rise >= 0.0).then(|| centre.z + rise.sqrt())
+}
+
+/// Where a vertical line leaves the side of a cylinder, if it does so between the cylinder's ends.
+fn rod_top(from: DVec3, to: DVec3, radius: f64, x: f64, y: f64) -> Option<f64> {
+    let axis = (to - from).try_normalize()?;
+    let start = DVec3::new(x, y, 0.0) - from;
+    // Both seen along the axis: |across + z up|^2 = radius^2.
+    let (across, up) = (start.reject_from_normalized(axis), DVec3::Z.reject_from_normalized(axis));
+    let (a, b, c) = (up.length_squared(), across.dot(up), across.length_squared() - radius * radius);
+    let root = b * b - a * c;
+    if a < 1e-12 || root < 0.0 {
+        return None;
+    }
+    let z = (root.sqrt() - b) / a;
+    let along = (start + DVec3::Z * z).dot(axis);
+    (0.0..=from.distance(to)).contains(&along).then_some(z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spec::CapsuleShape;
+
+    #[test]
+    fn a_capsule_has_a_top_over_its_shadow() {
+        let lying = ColliderShape::Capsule(CapsuleShape { from_m: [-1.0, 0.0, 0.5], to_m: [1.0, 0.0, 0.5], radius_m: 0.2 });
+        let near = |top: Option<f64>, want: f64| top.is_some_and(|z| (z - want).abs() < 1e-12);
+        assert!(near(top_at(&lying, 0.3, 0.0), 0.7) && near(top_at(&lying, 0.3, 0.12), 0.66) && near(top_at(&lying, 1.12, 0.0), 0.66));
+        assert!(top_at(&lying, 1.3, 0.0).is_none() && top_at(&lying, 0.0, 0.3).is_none());
+        let standing = ColliderShape::Capsule(CapsuleShape { from_m: [0.0; 3], to_m: [0.0, 0.0, 1.0], radius_m: 0.5 });
+        assert!(near(top_at(&standing, 0.3, 0.0), 1.4));
+        let leaning = ColliderShape::Capsule(CapsuleShape { from_m: [0.0; 3], to_m: [1.0, 0.0, 1.0], radius_m: 0.1 });
+        assert!(near(top_at(&leaning, 0.5, 0.0), 0.5 + 0.1 * 2f64.sqrt()));
     }
 }

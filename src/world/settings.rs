@@ -2,6 +2,7 @@
 
 use super::Resolved;
 use super::bodies::Matter;
+use super::region::bounds;
 use crate::solver::{Collider, Field, ObjectForce, PinRegion, Plane, Settings};
 use crate::spec::{BoxShape, ColliderShape, FieldFacts, Force, PlaneShape, Region, Spec, Until};
 use glam::{DVec3, Vec3};
@@ -52,9 +53,7 @@ fn end_s(until: Until) -> f64 {
 
 /// A region of an object as a shape within the object's captured bounds.
 fn pin(pin: &crate::spec::Pin, matter: &Matter, object: usize) -> PinRegion {
-    let points = &matter.particles.position_m[matter.bodies.ranges[object].clone()];
-    let low = points.iter().copied().reduce(Vec3::min).unwrap_or(Vec3::ZERO);
-    let high = points.iter().copied().reduce(Vec3::max).unwrap_or(Vec3::ZERO);
+    let (low, high) = bounds(&matter.particles.position_m[matter.bodies.ranges[object].clone()]);
     let level = |share: f64| f64::from(low.z) + share * f64::from(high.z - low.z);
     let slab = |from: f64, to: f64| {
         let (low, high) = (low.as_dvec3(), high.as_dvec3());

@@ -18,7 +18,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
-    let spec = setup::adjusted(phystalk::spec::Spec::read(&arguments.spec)?, flags)?;
+    let spec = setup::adjusted(setup::read(&arguments.spec)?, flags)?;
     let store = setup::store(flags)?;
     let mut engine = setup::engine(flags, store.clone());
     engine.facts(&spec, Path::new(""), &flags.run_options())?;

@@ -2,6 +2,7 @@
 
 use super::exit::{Failure, Kind};
 use super::flags::Flags;
+use super::output;
 use crate::conversation::Conversation;
 use crate::history::Session;
 use phystalk::spec::{Edit, Spec};
@@ -27,7 +28,18 @@ pub fn edits(flags: &Flags) -> Result<Vec<Edit>, Failure> {
 
 /// A spec with the `--set` flags applied.
 pub fn adjusted(spec: Spec, flags: &Flags) -> Result<Spec, Failure> {
-    Ok(spec.apply(&edits(flags)?)?)
+    let mut notes = Vec::new();
+    let adjusted = spec.apply_noted(&edits(flags)?, &mut notes);
+    notes.iter().for_each(|note| output::note(format!("warning: {note}")));
+    Ok(adjusted?)
+}
+
+/// A spec from a file. What was converted from another program's values is said.
+pub fn read(path: &Path) -> Result<Spec, Failure> {
+    let mut notes = Vec::new();
+    let spec = Spec::read_noted(path, &mut notes);
+    notes.iter().for_each(|note| output::note(format!("warning: {note}")));
+    Ok(spec?)
 }
 
 /// The spec that a scene starts with: defaults, one elastic object; a `.toml` or `.json` is read as
@@ -37,7 +49,7 @@ pub fn spec_of(scene: &str, flags: &Flags) -> Result<Spec, Failure> {
     let spec = if scene == "builtin:demo" {
         phystalk::scene::demo::spec()
     } else if is_spec(scene) {
-        Spec::read(path)?
+        read(path)?
     } else {
         let path = std::path::absolute(path).map_err(|e| Failure::file("find", path, &e))?;
         let mut spec = Spec::of_scene(&path.to_string_lossy());

@@ -210,7 +210,9 @@ impl Conversation {
     /// first turn of a session shows the scene as it is.
     fn accept(&mut self, words: &str, edits: Vec<Edit>, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
         let before = self.session.spec().clone();
-        let after = before.apply(&edits)?;
+        let mut notes = Vec::new();
+        let after = before.apply_noted(&edits, &mut notes)?;
+        notes.into_iter().for_each(|text| listener.event(Event::Warning { text }));
         let from = self.head_name();
         if from.is_some() && before.diff(&after).is_empty() {
             listener.event(Event::Message { text: "nothing to change: it is so already".to_owned() });

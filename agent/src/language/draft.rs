@@ -9,7 +9,7 @@ use super::say;
 use super::sense::Sense;
 use super::tokens::Token;
 use glam::{DMat3, DVec3, EulerRot};
-use phystalk::spec::{Auto, Camera, Elastic, Event, Material, Object, Spec};
+use phystalk::spec::{Auto, Camera, Event, Material, Object, Spec};
 use phystalk::world::ObjectFacts;
 use std::ops::Range;
 
@@ -110,10 +110,16 @@ impl<'a> Draft<'a> {
         self.spec.objects[index].name.clone()
     }
 
-    /// Its elastic material.
-    pub fn elastic(&mut self, index: usize) -> &mut Elastic {
-        let Material::Elastic(elastic) = &mut self.spec.objects[index].material;
-        elastic
+    /// What it is made of.
+    pub fn material(&mut self, index: usize) -> &mut Material {
+        &mut self.spec.objects[index].material
+    }
+
+    /// Its Young's modulus, where its material has one.
+    pub fn young_pa(&mut self, index: usize) -> Result<&mut Auto<f64>, Refusal> {
+        let object = &mut self.spec.objects[index];
+        let refusal = format!("{} is {}: it has no stiffness; \"make it of rubber\" gives it one", object.name, object.material.kind());
+        object.material.young_pa_mut().ok_or(refusal)
     }
 
     /// What is known of an object's shape. An object without facts is a metre cube on the ground.
@@ -197,13 +203,13 @@ impl<'a> Draft<'a> {
     pub fn push_at(&mut self, index: usize, at_s: f64, push_m_s: DVec3, stem: &str) {
         let object = self.name(index);
         let push = Some(say::tidy3(push_m_s));
-        let same = |e: &&mut Event| e.object == object && (e.at_s - at_s).abs() < 1e-9 && e.push_m_s.is_some();
+        let same = |e: &&mut Event| e.object == object && e.at_s.is_some_and(|t| (t - at_s).abs() < 1e-9) && e.push_m_s.is_some();
         if let Some(event) = self.spec.events.iter_mut().find(same) {
             event.push_m_s = push;
             return;
         }
         let name = self.free_name(stem, |spec, name| spec.events.iter().any(|e| e.name == name));
-        self.spec.events.push(Event { name, at_s: say::tidy(at_s), object, push_m_s: push, velocity_m_s: None });
+        self.spec.events.push(Event { push_m_s: push, ..Event::at(&name, &object, say::tidy(at_s)) });
     }
 
     /// The first of stem1, stem2, … that is not in use.

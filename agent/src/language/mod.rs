@@ -168,8 +168,9 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
 /// Events that this request sets after the end of a run whose length is given: they would never happen.
 fn too_late(context: &Context, after: &Spec) -> Vec<String> {
     let Auto::Value(end_s) = after.time.duration_s else { return Vec::new() };
-    let new = after.events.iter().filter(|e| e.at_s >= end_s && !context.spec.events.contains(e));
-    new.map(|e| format!("{} at {} comes after the end, {}: \"longer\"", e.name, say::seconds(e.at_s), say::seconds(end_s))).collect()
+    let new = after.events.iter().filter(|e| !context.spec.events.contains(e));
+    let late = new.filter_map(|e| Some((&e.name, e.at_s.filter(|at_s| *at_s >= end_s)?)));
+    late.map(|(name, at_s)| format!("{name} at {} comes after the end, {}: \"longer\"", say::seconds(at_s), say::seconds(end_s))).collect()
 }
 
 /// Why nothing was done.

@@ -64,6 +64,31 @@ pub fn pressure(value: f64) -> String {
     }
 }
 
+/// "Young's modulus 10 kPa, Poisson's ratio 0.45, 1030 kg/m³"
+pub fn material(material: &phystalk::spec::Material) -> String {
+    use phystalk::spec::{Auto, Material};
+    let young = material.young_pa().map(|young| match young {
+        Auto::Value(young) => format!("Young's modulus {}", pressure(young)),
+        Auto::Auto => "automatic stiffness".to_owned(),
+    });
+    let own = match material {
+        Material::Rigid(m) => vec![format!("friction {}", short(m.friction)), format!("gives back {} % of the speed", short(100.0 * m.restitution))],
+        Material::Elastic(m) => vec![format!("Poisson's ratio {}", short(m.poisson))],
+        Material::Muscle(m) => vec![format!("pulls with {} % of it", short(100.0 * m.activation.at(0.0)))],
+        Material::Plastic(m) => vec![format!("yields at {}", pressure(m.yield_stress_pa))],
+        Material::Viscoplastic(m) => {
+            vec![format!("yields at {}", pressure(m.yield_stress_pa)), format!("viscosity {} Pa·s", short(m.viscosity_pa_s))]
+        }
+        Material::Sand(m) => vec![format!("friction angle {}°", short(m.friction_angle_deg)), format!("cohesion {}", pressure(m.cohesion_pa))],
+        Material::Snow(m) => vec![format!("packs from {} % of compression", short(100.0 * m.theta_c))],
+        Material::Liquid(m) => {
+            vec![format!("viscosity {} Pa·s", short(m.viscosity_pa_s)), format!("surface tension {} N/m", short(m.surface_tension_n_m))]
+        }
+    };
+    let words: Vec<String> = young.into_iter().chain(own).chain([format!("{} kg/m³", short(material.density_kg_m3()))]).collect();
+    format!("{}, {}", material.kind(), words.join(", "))
+}
+
 /// "1 turn a second"
 pub fn turns(rate_rad_s: f64) -> String {
     let turns = short(rate_rad_s.abs() / std::f64::consts::TAU);

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 static SCENE: LazyLock<Gaussians> = LazyLock::new(|| gaussians(1));
 
 fn vase_of(g: &Gaussians) -> Gaussians {
-    g.subset(&select(g, &spec().objects[0].select))
+    g.subset(&select(g, &[], &spec().objects[0].select))
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::solver::substance::Substance;
 use crate::solver::twin::{self, Surroundings};
 use crate::solver::validate::{append, block};
 use crate::solver::{Collider, PinRegion, Plane, Settings};
-use crate::spec::{BoxShape, ColliderShape, ElasticModel, PlaneShape, SphereShape};
+use crate::spec::{BoxShape, CapsuleShape, ColliderShape, ElasticModel, PlaneShape, SphereShape};
 use glam::{IVec3, Mat3, Vec3};
 
 const CELL_M: f32 = 0.05;
@@ -30,7 +30,7 @@ impl Noise {
 }
 
 /// Two overlapping blocks of both energies, jittered, deformed and moving, that stand in the ground,
-/// in a box and in a sphere, with a pin.
+/// in a box, a sphere and a capsule, with a pin.
 fn scene() -> (Solver, Vec<ParticleState>) {
     scene_of([Substance::Elastic(ElasticModel::Corotated), Substance::Elastic(ElasticModel::NeoHookean)])
 }
@@ -49,9 +49,11 @@ fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
     settings.ground = Some(Plane { height_m: 0.003, friction: 0.4, restitution: 0.2 });
     let cube = BoxShape { centre_m: [0.0, 0.1, 0.0], size_m: [0.02, 0.3, 0.3] };
     let ball = SphereShape { centre_m: [0.33, 0.1, 0.1], radius_m: 0.05 };
+    let rod = CapsuleShape { from_m: [0.0, 0.0, 0.2], to_m: [0.1, 0.2, 0.24], radius_m: 0.03 };
     settings.colliders = vec![
         Collider { shape: ColliderShape::Box(cube), friction: 0.3, restitution: 0.0 },
         Collider { shape: ColliderShape::Sphere(ball), friction: 0.1, restitution: 0.5 },
+        Collider { shape: ColliderShape::Capsule(rod), friction: 0.2, restitution: 0.1 },
     ];
     let top = PlaneShape { point_m: [0.0, 0.0, 0.16], normal: [0.0, 0.0, -1.0] };
     let (low_m, high_m) = (Vec3::ZERO, Vec3::splat(0.2));

@@ -1,5 +1,6 @@
 //! The types of a spec. Field names carry their units; doc comments become the reference.
 
+mod activation;
 mod around;
 mod event;
 mod force;
@@ -9,6 +10,7 @@ mod scene;
 mod shape;
 mod view;
 
+pub use activation::*;
 pub use around::*;
 pub use event::*;
 pub use force::*;

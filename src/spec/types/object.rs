@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::spec::limits::{self, each, length};
 use crate::spec::path::NAME_PATTERN;
 
-use super::{Axis, Material, Select};
+use super::{Axis, Material, Region, Select};
 
 /// How Gaussians become a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -47,6 +47,10 @@ pub struct Object {
     /// What it is made of.
     #[serde(default)]
     pub material: Material,
+    /// Parts of another material, bonded to the rest; of two that overlap the later one has what both claim.
+    #[schemars(length(max = limits::PARTS))]
+    #[serde(default, rename = "part", skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<Part>,
     /// Moved by this before t = 0, after the rotation.
     #[serde(default)]
     #[schemars(transform = length(limits::PLACE_M))]
@@ -83,6 +87,7 @@ impl Object {
             select: Select::All,
             proxy: ProxyKind::Voxel,
             material: Material::default(),
+            parts: Vec::new(),
             offset_m: [0.0; 3],
             rotate_deg: [0.0; 3],
             rest: Rest::AsCaptured,
@@ -91,4 +96,18 @@ impl Object {
             forward: Axis::PlusX,
         }
     }
+}
+
+/// Another material in part of an object: no gap and no contact between them, they are one body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    /// Its name, unique within the object.
+    #[schemars(regex(pattern = NAME_PATTERN))]
+    pub name: String,
+    /// Which part of the object, in the captured pose.
+    pub region: Region,
+    /// What it is made of.
+    #[serde(default)]
+    pub material: Material,
 }

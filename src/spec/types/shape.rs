@@ -29,6 +29,21 @@ pub struct SphereShape {
     pub radius_m: f64,
 }
 
+/// A rod with round ends: all that is within a radius of a line, world frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CapsuleShape {
+    /// One end of the line.
+    #[schemars(transform = length(limits::PLACE_M))]
+    pub from_m: [f64; 3],
+    /// The other end.
+    #[schemars(transform = length(limits::PLACE_M))]
+    pub to_m: [f64; 3],
+    /// Its radius.
+    #[schemars(range(min = limits::SIZE_M.0, max = limits::SIZE_M.1))]
+    pub radius_m: f64,
+}
+
 /// A half-space: everything behind a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -51,6 +66,8 @@ pub enum Select {
     Box(BoxShape),
     /// Those in a sphere.
     Sphere(SphereShape),
+    /// Those of these places in the scene's file, from 0.
+    Ids(#[schemars(length(min = 1, max = limits::IDS))] Vec<u32>),
 }
 
 /// A part of an object.
@@ -77,6 +94,8 @@ pub enum ColliderShape {
     Box(BoxShape),
     /// A sphere.
     Sphere(SphereShape),
+    /// A rod with round ends.
+    Capsule(CapsuleShape),
     /// A half-space.
     Plane(PlaneShape),
 }

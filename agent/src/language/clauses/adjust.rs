@@ -6,7 +6,7 @@ use super::super::numbers::Dimension;
 use super::super::say;
 use super::super::sense::{Preposition, Property, Sense, Verb};
 use glam::DVec3;
-use phystalk::spec::{Auto, presets};
+use phystalk::spec::{Auto, Material, presets};
 
 /// Stiffness taken for "softer" where the automatic one is not known: before the first run of a scene.
 pub const YOUNG_BEFORE_RUN_PA: f64 = 2e5;
@@ -40,7 +40,7 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusa
     if let Some((density, _)) = clause.take_measure(Dimension::Density) {
         clause.take_scale(&[Property::Density]);
         for object in draft.subjects(clause)? {
-            draft.elastic(object).density_kg_m3 = say::tidy(density);
+            set_density(draft, object, density);
             let line = format!("{} has a density of {} kg/m³", draft.name(object), say::short(density));
             draft.gloss.push(line);
         }
@@ -79,9 +79,9 @@ fn property(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result<(), 
         Property::Hardness => stiffness(scale, clause, draft),
         Property::Density => {
             for object in draft.subjects(clause)? {
-                let before = draft.elastic(object).density_kg_m3;
+                let before = draft.material(object).density_kg_m3();
                 let after = say::tidy(before * scale.ratio);
-                draft.elastic(object).density_kg_m3 = after;
+                set_density(draft, object, after);
                 let line = format!(
                     "{}: {} to {} kg/m³",
                     comparative(draft.name(object), scale, "heavier", "lighter"),
@@ -144,7 +144,7 @@ fn named(property: Property, clause: &mut Clause, draft: &mut Draft) -> Result<(
         Property::Density => {
             let value = plain().ok_or("how dense? \"density 500 kg/m³\", \"twice as heavy\"")?;
             for object in draft.subjects(clause)? {
-                draft.elastic(object).density_kg_m3 = say::tidy(value);
+                set_density(draft, object, value);
                 let line = format!("{} has a density of {} kg/m³", draft.name(object), say::short(value));
                 draft.gloss.push(line);
             }
@@ -162,7 +162,7 @@ fn named(property: Property, clause: &mut Clause, draft: &mut Draft) -> Result<(
         Property::Poisson => {
             let value = plain().filter(|v| (0.0..=0.49).contains(v)).ok_or("Poisson's ratio is a number from 0 to 0.49")?;
             for object in draft.subjects(clause)? {
-                draft.elastic(object).poisson = say::tidy(value);
+                *draft.material(object).poisson_mut().ok_or("what flows or is rigid has no Poisson's ratio")? = say::tidy(value);
                 let line = format!("{} has a Poisson's ratio of {}", draft.name(object), say::short(value));
                 draft.gloss.push(line);
             }
@@ -206,9 +206,9 @@ fn comparative(name: String, scale: Scale, more: &str, less: &str) -> String {
 fn stiffness(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     for object in draft.subjects(clause)? {
         let name = draft.name(object);
-        let (before, note) = young_pa(draft, object);
+        let (before, note) = young_pa(draft, object)?;
         let after = say::tidy(before * scale.ratio);
-        draft.elastic(object).young_pa = Auto::Value(after);
+        *draft.young_pa(object)? = Auto::Value(after);
         let words = comparative(name, scale, "stiffer", "softer");
         draft.gloss.push(format!("{words}: Young's modulus {}{note} to {}", say::pressure(before), say::pressure(after)));
     }
@@ -216,20 +216,26 @@ fn stiffness(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result<(),
 }
 
 /// Young's modulus of an object, resolved where it is automatic, and a note that says so.
-pub fn young_pa(draft: &mut Draft, object: usize) -> (f64, &'static str) {
+pub fn young_pa(draft: &mut Draft, object: usize) -> Result<(f64, &'static str), Refusal> {
     let path = format!("object.{}.material.young_pa", draft.name(object));
-    match draft.elastic(object).young_pa {
+    Ok(match *draft.young_pa(object)? {
         Auto::Value(value) => (value, ""),
         Auto::Auto => match draft.resolved(&path) {
             Some(value) => (value, " (automatic until now)"),
             None => (YOUNG_BEFORE_RUN_PA, " (taken for the automatic one, which is known after a run)"),
         },
+    })
+}
+
+fn set_density(draft: &mut Draft, object: usize, density_kg_m3: f64) {
+    if let Some(density) = draft.material(object).density_mut() {
+        *density = say::tidy(density_kg_m3);
     }
 }
 
 fn set_young(clause: &mut Clause, draft: &mut Draft, young_pa: f64) -> Result<(), Refusal> {
     for object in draft.subjects(clause)? {
-        draft.elastic(object).young_pa = Auto::Value(say::tidy(young_pa));
+        *draft.young_pa(object)? = Auto::Value(say::tidy(young_pa));
         let line = format!("{} has a Young's modulus of {}", draft.name(object), say::pressure(young_pa));
         draft.gloss.push(line);
     }
@@ -242,37 +248,34 @@ pub fn material(name: &'static str, clause: &mut Clause, draft: &mut Draft) -> R
     let like = clause.has(|s| *s == Sense::As) || clause.has(|s| matches!(s, Sense::Property(_)));
     let times = clause.has(|s| matches!(s, Sense::Factor(_)));
     let only = if like { clause.take_scale(&[Property::Stiffness, Property::Hardness, Property::Density]) } else { None };
+    let preset = presets::material(name).map(|preset| preset.material.clone());
     for object in draft.subjects(clause)? {
-        if let (Some(scale), Some(preset)) = (only, presets::elastic(name)) {
-            let ratio = if times { scale.ratio } else { 1.0 };
-            let (density, young) = (say::tidy(preset.density_kg_m3 * ratio), say::tidy(preset.young_pa * ratio));
-            let share = if times { format!("{} times ", say::short(ratio)) } else { String::new() };
-            let line = if scale.property == Property::Density {
-                draft.elastic(object).density_kg_m3 = density;
-                format!("{} has {share}the density of {name}: {} kg/m³", draft.name(object), say::short(density))
-            } else {
-                draft.elastic(object).young_pa = Auto::Value(young);
-                format!("{} has {share}the stiffness of {name}: Young's modulus {}", draft.name(object), say::pressure(young))
-            };
-            draft.gloss.push(line);
-            continue;
-        }
-        let line = match presets::elastic(name) {
-            Some(preset) => {
-                *draft.elastic(object) = preset.material();
-                format!(
-                    "{} is made of {name}: Young's modulus {}, Poisson's ratio {}, {} kg/m³",
-                    draft.name(object),
-                    say::pressure(preset.young_pa),
-                    say::short(preset.poisson),
-                    say::short(preset.density_kg_m3)
-                )
+        let line = match (only, &preset) {
+            (Some(scale), Some(preset)) => resemble(draft, object, name, preset, scale, times)?,
+            (_, Some(preset)) => {
+                *draft.material(object) = preset.clone();
+                format!("{} is made of {name}: {}", draft.name(object), say::material(preset))
             }
-            None => format!("{} is elastic", draft.name(object)),
+            (_, None) => format!("{} is elastic", draft.name(object)),
         };
         draft.gloss.push(line);
     }
     Ok(())
+}
+
+/// One property of a preset: "as soft as jelly", "twice the density of foam".
+fn resemble(draft: &mut Draft, object: usize, name: &str, preset: &Material, scale: Scale, times: bool) -> Result<String, Refusal> {
+    let ratio = if times { scale.ratio } else { 1.0 };
+    let share = if times { format!("{} times ", say::short(ratio)) } else { String::new() };
+    if scale.property == Property::Density {
+        let density = say::tidy(preset.density_kg_m3() * ratio);
+        set_density(draft, object, density);
+        return Ok(format!("{} has {share}the density of {name}: {} kg/m³", draft.name(object), say::short(density)));
+    }
+    let Some(Auto::Value(young)) = preset.young_pa() else { return Err(format!("{name} has no stiffness of its own")) };
+    let young = say::tidy(young * ratio);
+    *draft.young_pa(object)? = Auto::Value(young);
+    Ok(format!("{} has {share}the stiffness of {name}: Young's modulus {}", draft.name(object), say::pressure(young)))
 }
 
 fn height(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {

@@ -131,7 +131,7 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
             _ if at_s.is_some() => {
                 let at_s = say::tidy(at_s.unwrap_or_default());
                 let event = draft.free_name("stop", |spec, name| spec.events.iter().any(|e| e.name == name));
-                draft.spec.events.push(Event { name: event, at_s, object: name.clone(), push_m_s: None, velocity_m_s: Some([0.0; 3]) });
+                draft.spec.events.push(Event { velocity_m_s: Some([0.0; 3]), ..Event::at(&event, &name, at_s) });
                 "is stopped"
             }
             None | Some(Verb::Rest) => {

@@ -133,7 +133,8 @@ fn refuse_unbuilt(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
 
 /// Why something is not there yet, and what is.
 pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
-    let names: Vec<String> = phystalk::spec::presets::ELASTIC.iter().map(|p| p.name.to_owned()).collect();
+    let names: Vec<String> =
+        phystalk::spec::presets::MATERIALS.iter().filter(|p| p.material.kind() == "elastic").map(|p| p.name.to_owned()).collect();
     let elastic = format!("elastic ones are: {}", names.join(", "));
     // "Liquid" says itself what it is.
     let is = |kind: &str| if kind.ends_with(words) { String::new() } else { format!("{words} is {kind}: ") };

@@ -119,21 +119,21 @@ fn object(draft: &mut Draft, index: usize, was: &Object, how: Follow, said: &mut
     let thing = draft.object(index);
     (thing.velocity_m_s, thing.spin_rad_s, thing.offset_m, thing.rotate_deg) = (velocity, spin, offset, rotate);
     let path = format!("object.{name}.material.young_pa");
-    let phystalk::spec::Material::Elastic(elastic_was) = was.material;
-    let phystalk::spec::Material::Elastic(elastic_now) = now.material;
-    if let Auto::Value(is) = elastic_now.young_pa {
-        let was = match elastic_was.young_pa {
+    if let (Some(young_was), Some(Auto::Value(is))) = (was.material.young_pa(), now.material.young_pa()) {
+        let was = match young_was {
             Auto::Value(value) => value,
             Auto::Auto => draft.resolved(&path).unwrap_or(is),
         };
         let mut young = is;
         scalar((was, is), how, &mut young, |v| format!("Young's modulus of {name} {}", say::pressure(v)), said);
-        draft.elastic(index).young_pa = Auto::Value(young);
+        if let Some(target) = draft.material(index).young_pa_mut() {
+            *target = Auto::Value(young);
+        }
     }
-    let (was, is) = (elastic_was.density_kg_m3, elastic_now.density_kg_m3);
-    let mut density = is;
-    scalar((was, is), how, &mut density, |v| format!("density of {name} {} kg/m³", say::short(v)), said);
-    draft.elastic(index).density_kg_m3 = density;
+    let (was, is) = (was.material.density_kg_m3(), now.material.density_kg_m3());
+    if let Some(density) = draft.material(index).density_mut() {
+        scalar((was, is), how, density, |v| format!("density of {name} {} kg/m³", say::short(v)), said);
+    }
 }
 
 /// A vector that went from `was` to `is`. Of a rate the changed part is turned round or grown by half for each share;
@@ -200,9 +200,10 @@ pub fn amend(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
                 let event = &mut draft.spec.events[i];
                 event.push_m_s = Some(say::tidy3(new));
                 if let Some(at_s) = clause.take_at() {
-                    event.at_s = say::tidy(at_s);
+                    event.at_s = Some(say::tidy(at_s));
                 }
-                format!("{} of {} goes{way} at {}: {} more", event.name, thing.name, say::seconds(event.at_s), say::speed(speed))
+                let at = event.at_s.map_or(String::new(), |at_s| format!(" at {}", say::seconds(at_s)));
+                format!("{} of {} goes{way}{at}: {} more", event.name, thing.name, say::speed(speed))
             }
             None => {
                 draft.object(index).velocity_m_s = say::tidy3(velocity - old + new);

@@ -1,0 +1,101 @@
+//! A material in the solver's terms: its law, its moduli, and what `"auto"` means for them.
+
+use crate::solver::{Activation, SolverError, Substance};
+use crate::spec::{self, Auto, Material};
+use glam::DVec3;
+
+/// Compression under its own weight that a flowing thing's automatic stiffness allows.
+const FLOWING_STRAIN: f64 = 0.01;
+/// Softest and stiffest automatic value of a thing that flows, Pa: stiffer ones only cost steps.
+const FLOWING_PA: (f64, f64) = (1e4, 1e6);
+/// Standard gravity, whatever the spec's is, so that a thing is the same stuff everywhere.
+const STANDARD_M_S2: f64 = 9.81;
+
+/// A law and its numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stuff {
+    /// The law.
+    pub substance: Substance,
+    /// Young's modulus.
+    pub young_pa: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Mass density.
+    pub density_kg_m3: f64,
+}
+
+/// What automatic moduli in one object go by.
+#[derive(Clone, Copy, Debug)]
+pub struct Yardstick {
+    /// Young's modulus with which the object stands, with room to spare.
+    pub standing_pa: f64,
+    /// The density for which that is so.
+    pub density_kg_m3: f64,
+    /// Height of the object.
+    pub height_m: f64,
+}
+
+impl Yardstick {
+    /// Automatic Young's modulus of a material in this object.
+    pub fn young_pa(&self, material: &Material) -> f64 {
+        let density = material.density_kg_m3();
+        if material.stands() {
+            return self.standing_pa * density / self.density_kg_m3;
+        }
+        // Bulk modulus from depth: K = rho g h / strain, E = 3 K (1 - 2 nu).
+        let bulk_pa = density * STANDARD_M_S2 * self.height_m / FLOWING_STRAIN;
+        (3.0 * bulk_pa * (1.0 - 2.0 * material.poisson().unwrap_or(0.0))).clamp(FLOWING_PA.0, FLOWING_PA.1)
+    }
+
+    /// A material of this object as the solver takes it. A law that the solver does not have is an error.
+    pub fn stuff(&self, material: &Material) -> Result<Stuff, SolverError> {
+        Ok(Stuff {
+            substance: substance(material)?,
+            young_pa: material.young_pa().unwrap_or(Auto::Auto).unwrap_or(self.young_pa(material)),
+            poisson: material.poisson().unwrap_or(0.0),
+            density_kg_m3: material.density_kg_m3(),
+        })
+    }
+}
+
+fn substance(material: &Material) -> Result<Substance, SolverError> {
+    match material {
+        Material::Elastic(m) => Ok(Substance::Elastic(m.model)),
+        Material::Muscle(m) => {
+            let fibre = DVec3::from(m.fibre).normalize_or(DVec3::Z).as_vec3();
+            Ok(Substance::Muscle { model: m.model, fibre, activation: activation(&m.activation) })
+        }
+        Material::Plastic(m) => Ok(Substance::Plastic { yield_stress_pa: m.yield_stress_pa as f32, hardening_pa: m.hardening_pa as f32 }),
+        Material::Viscoplastic(m) => {
+            Ok(Substance::Viscoplastic { yield_stress_pa: m.yield_stress_pa as f32, viscosity_pa_s: m.viscosity_pa_s as f32 })
+        }
+        Material::Sand(m) => Ok(Substance::Sand { friction_angle_deg: m.friction_angle_deg as f32, cohesion_pa: m.cohesion_pa as f32 }),
+        Material::Snow(m) => Ok(Substance::Snow { theta_c: m.theta_c as f32, theta_s: m.theta_s as f32, hardening: m.hardening as f32 }),
+        other => Err(SolverError::Input { what: format!("a {} material", other.kind()), expected: "a kind whose law it has".to_owned() }),
+    }
+}
+
+fn activation(activation: &spec::Activation) -> Activation {
+    match activation {
+        spec::Activation::Steady(value) => Activation::Curve(vec![(0.0, *value)]),
+        spec::Activation::Curve(points) => Activation::Curve(points.iter().map(|[time_s, value]| (*time_s, *value)).collect()),
+        spec::Activation::Wave(w) => Activation::Wave { least: w.least, most: w.most, period_s: w.period_s, phase: w.phase },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spec::{Elastic, Sand};
+
+    #[test]
+    fn heavier_parts_are_stiffer_and_deeper_heaps_too() {
+        let yard = |height_m| Yardstick { standing_pa: 2e5, density_kg_m3: 1000.0, height_m };
+        let heavy = Material::Elastic(Elastic { density_kg_m3: 3000.0, ..Elastic::default() });
+        assert_eq!(yard(1.0).young_pa(&heavy), 6e5);
+        let sand = Material::Sand(Sand { young_pa: Auto::Auto, ..Sand::default() });
+        // 1600 kg/m3 x 9.81 m/s2 x 0.25 m / 0.01 = 392 kPa of bulk modulus, x 3 (1 - 0.6).
+        assert!((yard(0.25).young_pa(&sand) - 1.2 * 392_400.0).abs() < 1.0);
+        assert_eq!(yard(10.0).young_pa(&sand), 1e6);
+    }
+}

@@ -1,0 +1,101 @@
+//! Every material end to end: a block of it stands, falls and does what such a stuff does.
+
+#![allow(clippy::unwrap_used, reason = "a test of good input")]
+
+use phystalk::gpu::DeviceRequest;
+use phystalk::scene::{self, Gaussians};
+use phystalk::spec::{Auto, Material, Part, Region, Spec, presets};
+use phystalk::stages::{Engine, ObjectMetrics, Report, RunOptions};
+use phystalk::store::Store;
+use phystalk::{Frame, Progress, Sink, Stop};
+use std::path::Path;
+
+/// Keeps nothing.
+struct Deaf;
+
+impl Sink for Deaf {
+    fn progress(&mut self, _: Progress) {}
+    fn frame(&mut self, _: Frame) {}
+    fn warning(&mut self, _: &str) {}
+}
+
+/// A column of Gaussians, 0.12 x 0.12 x 0.24 m, standing on z = 0.
+fn column() -> Gaussians {
+    let mut column = Gaussians::default();
+    for i in 0..6 * 6 * 12 {
+        let cell = glam::Vec3::new((i % 6) as f32, (i / 6 % 6) as f32, (i / 36) as f32);
+        column.mean.push(cell * 0.02 + glam::Vec3::new(-0.05, -0.05, 0.0));
+        column.scale.push(glam::Vec3::splat(0.009));
+        column.rotation.push([1.0, 0.0, 0.0, 0.0]);
+        column.opacity.push(0.9);
+        column.sh.extend([0.8, 0.1, -0.3]);
+    }
+    column
+}
+
+fn spec(folder: &Path) -> Spec {
+    scene::write(&folder.join("column.ply"), &column()).unwrap();
+    let mut spec = Spec::of_scene("column.ply");
+    spec.scene.up = Auto::Value(phystalk::spec::Axis::PlusZ);
+    spec.time.duration_s = Auto::Value(0.3);
+    spec.time.fps = 20;
+    spec.solver.cells_across = Auto::Value(8);
+    spec
+}
+
+fn run(spec: &Spec, folder: &Path) -> Report {
+    let mut engine = Engine::new(Store::open(Some(&folder.join("store")), folder).unwrap(), DeviceRequest::default());
+    let options = RunOptions { render: false, ..RunOptions::default() };
+    let report = engine.run(spec, folder, &options, None, &mut Deaf, &Stop::default()).unwrap();
+    assert_eq!(report.metrics.solver.nonfinite, 0);
+    report
+}
+
+/// How far its top sank, and how much wider it got.
+fn fate(object: &ObjectMetrics) -> (f64, f64) {
+    let ends = |values: &[f64]| (values[0], values[values.len() - 1]);
+    let ((high, low), (narrow, wide)) = (ends(&object.high_m), ends(&object.spread_m));
+    (high - low, wide / narrow)
+}
+
+fn fate_of(material: &Material, folder: &Path) -> (f64, f64) {
+    let mut spec = spec(folder);
+    spec.objects[0].material = material.clone();
+    fate(&run(&spec, folder).metrics.objects["column"])
+}
+
+fn preset(name: &str) -> Material {
+    presets::material(name).unwrap().material.clone()
+}
+
+#[test]
+fn what_stands_stands_and_what_flows_flows() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["rubber", "clay"] {
+        let (sank, wider) = fate_of(&preset(name), folder.path());
+        assert!(sank.abs() < 0.01 && (wider - 1.0).abs() < 0.03, "{name} sank {sank} m and got {wider} times as wide");
+    }
+    for name in ["sand", "mud"] {
+        let (sank, wider) = fate_of(&preset(name), folder.path());
+        assert!(sank > 0.02 && wider > 1.08, "{name} sank {sank} m and got {wider} times as wide");
+    }
+    // A heap of snow keeps its edges.
+    let (snow, _) = fate_of(&preset("snow"), folder.path());
+    assert!(snow < 0.03, "snow sank {snow} m");
+}
+
+#[test]
+fn parts_of_one_body_are_of_their_own_stuff() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut whole = spec(folder.path());
+    whole.objects[0].material = preset("rubber");
+    let mut parted = whole.clone();
+    parted.objects[0].parts.push(Part { name: "foot".to_owned(), region: Region::Below(0.4), material: preset("sand") });
+    let (whole, parted) = (run(&whole, folder.path()), run(&parted, folder.path()));
+    let mass = |report: &Report| report.metrics.objects["column"].mass_kg;
+    // Two fifths are of 1600 kg/m3 instead of 930.
+    let heavier = mass(&parted) / mass(&whole);
+    assert!((heavier - (0.6 + 0.4 * 1600.0 / 930.0)).abs() < 0.08, "{heavier} times as heavy");
+    let ((stood, _), (sank, wider)) = (fate(&whole.metrics.objects["column"]), fate(&parted.metrics.objects["column"]));
+    assert!(stood.abs() < 0.01 && sank > 0.015 && wider > 1.02, "stood {stood}, sank {sank}, {wider} times as wide");
+}
