@@ -44,8 +44,8 @@ impl Spec {
         }
         let mut out = String::new();
         match value {
-            Value::Object(_) => section(&mut out, &format!("[{path}]"), value),
-            Value::Array(entries) if is_section(value) => entries.iter().for_each(|entry| section(&mut out, &format!("[[{path}]]"), entry)),
+            Value::Object(_) => section(&mut out, &format!("[{path}]"), path, value),
+            Value::Array(entries) if is_section(value) => entries.iter().for_each(|entry| section(&mut out, &format!("[[{path}]]"), path, entry)),
             plain => {
                 let _ = writeln!(out, "{path} = {}", inline(plain));
             }

@@ -3,9 +3,9 @@
 
 use super::engine::Engine;
 use super::run::{BACKGROUND, replay_pictures};
-use super::{EngineError, RunOptions, keys, still};
+use super::{EngineError, RunOptions, still};
 use crate::render::Image;
-use crate::spec::{Material, Spec};
+use crate::spec::{Auto, Spec};
 use crate::world::{self, Figure};
 use crate::{Frame, Sink, Stop, proxy};
 use serde_json::{Map, Value, json};
@@ -41,14 +41,23 @@ impl Engine {
         let (key, prepared) = still::scene(&mut self.memory, &self.store, spec, base)?;
         let prepared = prepared.value;
         let mut values = world::resolve(spec, &prepared, false, options.size, options.camera).report(spec);
-        for (index, object) in spec.objects.iter().enumerate().filter(|(_, o)| keys::young_is_auto(&o.material)) {
-            let Material::Elastic(elastic) = object.material;
-            let inputs = format!("{key} {index} {} {}", prepared.ground_m, elastic.density_kg_m3);
+        for (index, object) in spec.objects.iter().enumerate() {
+            let parts = object.parts.iter().map(|part| (format!("object.{}.part.{}", object.name, part.name), &part.material));
+            let pieces = std::iter::once((format!("object.{}", object.name), &object.material)).chain(parts);
+            // What flows goes by the depth of its solid, which is known after a run.
+            let asked: Vec<_> = pieces.filter(|(_, m)| m.stands() && m.young_pa() == Some(Auto::Auto)).collect();
+            if asked.is_empty() {
+                continue;
+            }
+            let density = object.material.density_kg_m3();
+            let inputs = format!("{key} {index} {} {density}", prepared.ground_m);
             let value_pa = *self.memory.young_pa.entry(inputs).or_insert_with(|| {
                 let members = prepared.gaussians.subset(&prepared.members(index as u32, false));
-                proxy::young_auto(&proxy::stance_of(&members, prepared.ground_m as f32), elastic.density_kg_m3).value_pa
+                proxy::young_auto(&proxy::stance_of(&members, prepared.ground_m as f32), density).value_pa
             });
-            values.insert(format!("object.{}.material.young_pa", object.name), json!(value_pa));
+            for (path, material) in asked {
+                values.insert(format!("{path}.material.young_pa"), json!(value_pa * material.density_kg_m3() / density));
+            }
         }
         Ok(values)
     }
