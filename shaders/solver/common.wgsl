@@ -34,6 +34,10 @@ struct Params {
     momentum_bits: u32,
     // Number of the segment's first substep.
     first_substep: u32,
+    // Fixed-point units of a cell full of liquid's surface tension over density, m^3/s^2.
+    tension_units: f32,
+    // And of its kinematic viscosity, m^2/s.
+    viscosity_units: f32,
 }
 
 // Offset in nodes of one axis' coordinate within the block-linear storage; the three axes add up.

@@ -57,12 +57,12 @@ fn surface_normal(c: Collider, face: u32, x: vec3<f32>) -> vec3<f32> {
 }
 
 // Mark of a contact on a node: the nearer the larger, so that the nearest particle wins a maximum;
-// zero where there is none. 22 bits of nearness above 10 bits of feature.
+// zero where there is none. 21 bits of nearness above 11 bits of feature, the topmost SLIPS.
 fn pack_mark(gap_m: f32, feature: u32) -> u32 {
     let near = 1.0 - clamp(gap_m / params.reach_m, 0.0, 1.0);
-    return ((u32(near * GAP_STEPS) + 1u) << 10u) | feature;
+    return ((u32(near * GAP_STEPS) + 1u) << 11u) | feature;
 }
 
 fn mark_gap_m(mark: u32) -> f32 {
-    return params.reach_m * (1.0 - f32((mark >> 10u) - 1u) / GAP_STEPS);
+    return params.reach_m * (1.0 - f32((mark >> 11u) - 1u) / GAP_STEPS);
 }

@@ -30,12 +30,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     v += substep.dt_s * objects[object & 0xffffu].xyz;
 
     // Whatever got behind a surface is put back on it and keeps no inward velocity.
+    // Liquid that stands nearer to one than it rests comes no nearer.
     let rest_m = min(tag.z, 0.0);
+    let slips = matter[i].w == 0.0;
     for (var c = 0u; c < params.collider_count; c++) {
         let t = touch(colliders[c], x);
-        if (t.distance_m < rest_m) {
+        let before_m = touch(colliders[c], position.xyz).distance_m;
+        let nearest_m = select(rest_m, clamp(before_m, 0.0, max(tag.z, 0.0)), slips);
+        if (t.distance_m < nearest_m) {
             let normal = surface_normal(colliders[c], t.face, x);
-            x += normal * (rest_m - t.distance_m);
+            x += normal * (nearest_m - t.distance_m);
             v -= normal * min(dot(v, normal), 0.0);
         }
     }

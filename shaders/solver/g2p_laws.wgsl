@@ -27,6 +27,14 @@ fn bounded(f: mat3x3<f32>, least: f32, most: f32) -> mat3x3<f32> {
     return compose(axes.u, clamp(axes.s, vec3<f32>(least), vec3<f32>(most)), axes.v);
 }
 
+// Liquid has no shape to keep: what is shown goes back to that of the captured Gaussian, turned.
+fn relaxed(f: mat3x3<f32>, s: Substance, dt_s: f32) -> mat3x3<f32> {
+    if (s.kind != LIQUID) {
+        return f;
+    }
+    return f + (polar(f) - f) * min(dt_s / LIQUID_SHOWN_S, 1.0);
+}
+
 // Keeps what the law remembers, and what is shown.
 fn remember(i: u32, s: Substance, answer: Answer, flow: Flow) {
     let n = params.count;
@@ -34,7 +42,8 @@ fn remember(i: u32, s: Substance, answer: Answer, flow: Flow) {
     if (s.shown_most > 0.0) {
         let k = 3u * bitcast<u32>(matter[3u * n + i].x);
         let old = transpose(mat3x3<f32>(shown[k].xyz, shown[k + 1u].xyz, shown[k + 2u].xyz));
-        let rows = transpose(bounded(old + flow.dt_s * (flow.gradient * old), s.shown_least, s.shown_most));
+        let moved = bounded(old + flow.dt_s * (flow.gradient * old), s.shown_least, s.shown_most);
+        let rows = transpose(relaxed(moved, s, flow.dt_s));
         shown[k] = vec4<f32>(rows[0], 0.0);
         shown[k + 1u] = vec4<f32>(rows[1], 0.0);
         shown[k + 2u] = vec4<f32>(rows[2], 0.0);

@@ -55,9 +55,20 @@ fn respond(v: vec3<f32>, mark: u32, x: vec3<f32>) -> vec3<f32> {
     let leaving = max(allowed, bounced);
     let sliding = v - normal * approach;
     let speed = length(sliding);
-    let grip = c.surface.x * (leaving - approach);
+    let grip = select(c.surface.x, 0.0, (mark & SLIPS) != 0u) * (leaving - approach);
     let kept = select(0.0, 1.0 - grip / max(speed, 1e-20), speed > grip);
     return normal * leaving + sliding * kept;
+}
+
+// How far a wall holds what slides along it: all the way where a liquid's viscosity reaches through a
+// cell soon enough, hardly where it is thin.
+fn held_by(mark: u32, x: vec3<f32>, viscosity_m2_s: f32) -> f32 {
+    if ((mark & SLIPS) == 0u || touch(colliders[(mark & 1023u) >> 3u], x).distance_m > 0.5 * params.cell_m) {
+        return 0.0;
+    }
+    let rate = viscosity_m2_s * params.per_m * params.per_m;
+    let grip = substep.dt_s * WALL_GRIP * rate * (1.0 + rate * WALL_SOON_S);
+    return grip / (1.0 + grip);
 }
 
 @compute @workgroup_size(64)
@@ -87,20 +98,27 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         atomicStore(&control.overflow, 1u);
     }
     let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
-    var v = vec3<f32>(sum.xyz) * (params.mass_units / momentum_unit) / f32(sum.w) + substep.dt_s * params.gravity_m_s2;
+    var v = vec3<f32>(sum.xyz) * (params.mass_units / momentum_unit) / f32(sum.w);
+    let wet = liquid_pull(node);
+    v += substep.dt_s * (params.gravity_m_s2 + wet.xyz);
 
     let in_block = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
     let across = vec3<u32>(block % params.blocks.x, (block / params.blocks.x) % params.blocks.y, block / (params.blocks.x * params.blocks.y));
     let x = vec3<f32>(params.origin + vec3<i32>(across * 4u + in_block)) * params.cell_m;
+    var held = 0.0;
     if (mark.y != 0u) {
         v = respond(v, mark.y, x);
+        held = max(held, held_by(mark.y, x, wet.w));
     }
     if (mark.x != 0u) {
         v = respond(v, mark.x, x);
+        held = max(held, held_by(mark.x, x, wet.w));
     }
     if (params.pin_count > 0u) {
-        let held = pinned(x);
-        v = select(v, held.xyz, held.w > 0.0);
+        let pin = pinned(x);
+        v = select(v, pin.xyz, pin.w > 0.0);
+        held = select(held, 0.0, pin.w > 0.0);
     }
-    velocity[node] = vec4<f32>(v, 0.0);
+    // Walls along which liquid sticks are the next pass's.
+    velocity[node] = vec4<f32>(v, held);
 }

@@ -8,6 +8,7 @@ fn respond(s: Substance, trial: mat3x3<f32>, history: f32, mu: f32, lambda: f32,
         case SAND: { return sand(s, trial, history, mu, lambda); }
         case SNOW: { return snow(s, trial, history, mu, lambda); }
         case MUSCLE: { return muscle(s, trial, history, mu, lambda, flow); }
+        case LIQUID: { return liquid(s, trial, history, lambda, flow); }
         default: { return Answer(trial, history, kirchhoff(trial, mu, lambda, s.model == 1u)); }
     }
 }

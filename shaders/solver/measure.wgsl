@@ -43,6 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     atomicMin(&control.j_low, ordered(j));
     atomicMax(&control.j_high, ordered(j));
     atomicMax(&control.final_speed, bitcast<u32>(length(v)));
-    let modulus = wave_modulus(substances[row_of(bitcast<u32>(tag.y))], tag.w, matter[i].w, matter[n + i].w);
+    let s = substances[row_of(bitcast<u32>(tag.y))];
+    let modulus = wave_modulus(s, tag.w, matter[i].w, matter[n + i].w) + capillary_modulus(s, params.per_m);
     atomicMax(&control.wave_speed, bitcast<u32>(sqrt(modulus * matter[2u * n + i].w / kinematics[i].w)));
 }

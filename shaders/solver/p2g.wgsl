@@ -42,7 +42,9 @@ fn nearest(first: u32, end: u32, i: u32, x: vec3<f32>) -> Near {
         }
         let gap_m = t.distance_m - matter[3u * params.count + i].z;
         if (gap_m < params.reach_m) {
-            let mark = pack_mark(gap_m, c * 8u + t.face);
+            // Without a shear modulus there is no Coulomb friction either.
+            let slips = select(0u, SLIPS, matter[i].w == 0.0);
+            let mark = pack_mark(gap_m, (c * 8u + t.face) | slips);
             if (mark > near.mark) {
                 near = Near(mark, surface_normal(colliders[c], t.face, x));
             }

@@ -46,8 +46,16 @@ fn wave_modulus(s: Substance, history: f32, mu: f32, lambda: f32) -> f32 {
         case SNOW: { return passive * snow_stiffening(s, history); }
         // A fibre that pulls with E a adds as much to the stiffness along it; a is at most 1.
         case MUSCLE: { return passive + young(mu, lambda); }
+        // Shear that relaxes within a substep hardly stiffens.
+        case LIQUID: { return lambda * (1.0 + 4.0 / 3.0 * s.values[0] / (s.values[0] + lambda * USUAL_STEP_S)); }
         default: { return passive; }
     }
+}
+
+// As much as capillary waves of the length of a cell run on: dt <= 0.4 sqrt(rho cell^3 / (2 pi sigma))
+// is the acoustic bound of 2 pi sigma / cell (Brackbill et al. 1992).
+fn capillary_modulus(s: Substance, per_m: f32) -> f32 {
+    return select(0.0, 6.2831853 * s.values[1] * per_m, s.kind == LIQUID);
 }
 
 // Stomakhin et al. 2013: what is packed is stiffer. `packing` is the plastic part of det F.

@@ -4,6 +4,7 @@ use super::constants::{FIXED_BITS_RETREAT, SLACK_CELLS};
 use super::core::Solver;
 use super::fields::{Fields, When};
 use super::grid::GridBuffers;
+use super::liquid::LiquidBound;
 use super::obstacles;
 use super::types::{Advance, Softened, SolverError};
 use super::watch::{Control, Watch};
@@ -305,6 +306,10 @@ impl Solver {
             self.current = 1 - self.current;
         }
         let b = &bound[self.current];
+        if let Some(liquid) = b.liquid.as_ref().filter(|_| sorts) {
+            let span_s = plan.time_s((step + plan.sort_every).min(plan.substeps)) - plan.time_s(step);
+            self.record_liquid(liquid, &b.active_groups, span_s as f32, recording);
+        }
         let passes = &self.passes;
         if step == 0 {
             let first = Substep { dt_next_s: substep.dt_s, ..substep };
@@ -312,6 +317,9 @@ impl Solver {
         }
         recording.dispatch_with(&passes.p2g, &b.p2g, &substep, groups);
         recording.indirect_with(&passes.grid, &b.grid, &substep, &b.active_groups, 0);
+        if let Some(liquid) = &b.liquid {
+            self.record_walls(liquid, &b.active_groups, recording);
+        }
         recording.dispatch_with(&passes.g2p, &b.g2p, &substep, groups);
         self.record_fields(b, &substep, recording);
         self.substep += 1;
@@ -347,6 +355,8 @@ impl Solver {
         let stress = [params, kinematics, matter, control, &laws.table, &laws.activations];
         let around = (&self.colliders_buffer, &self.objects_buffer);
         let g2p = [params, kinematics, matter, &grid.velocity, around.0, around.1, control, &laws.table, &laws.activations, laws.shown()];
+        let mut on_grid = vec![params, &grid.active_blocks, around.0, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, control];
+        on_grid.extend(grid.liquid.as_ref().map(|l| &l.pull));
         Bound {
             active_groups: grid.active_groups.clone(),
             fields: self.fields.as_ref().map(|f| f.bind(self, state, When::Now)),
@@ -359,10 +369,8 @@ impl Solver {
             order: gpu.bind(&p.order, &[params, &self.slots, kinematics, matter, &other.kinematics, &other.matter]),
             stress: gpu.bind(&p.stress, &stress[..if laws.all { 6 } else { 5 }]),
             p2g: gpu.bind(&p.p2g, &[params, kinematics, matter, &self.colliders_buffer, &grid.sums, &grid.marks, &self.control]),
-            grid: gpu.bind(
-                &p.grid,
-                &[params, &grid.active_blocks, &self.colliders_buffer, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, &self.control],
-            ),
+            grid: gpu.bind(&p.grid, &on_grid),
+            liquid: self.bind_liquid(grid, state),
             g2p: gpu.bind(&p.g2p, &g2p[..if laws.all { 10 } else { 8 }]),
         }
     }
@@ -413,7 +421,7 @@ impl Solver {
 
 /// The bind groups of the passes over one of the two state buffers.
 pub(super) struct Bound {
-    active_groups: wgpu::Buffer,
+    pub active_groups: wgpu::Buffer,
     /// Where a scene has fields.
     pub fields: Option<wgpu::BindGroup>,
     bin: wgpu::BindGroup,
@@ -426,4 +434,5 @@ pub(super) struct Bound {
     pub p2g: wgpu::BindGroup,
     pub grid: wgpu::BindGroup,
     pub g2p: wgpu::BindGroup,
+    pub liquid: Option<LiquidBound>,
 }

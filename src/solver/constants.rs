@@ -24,7 +24,9 @@ pub const J_LEAST: f32 = 0.05;
 /// See [`J_LEAST`].
 pub const J_MOST: f32 = 20.0;
 /// Steps of the gap in a contact mark.
-pub const GAP_STEPS: f32 = 2_097_152.0;
+pub const GAP_STEPS: f32 = 1_048_576.0;
+/// In a contact mark: the particle slides without Coulomb friction.
+pub const SLIPS: u32 = 1024;
 /// Contact is marked from this far off, in cells: a particle moves less in a substep.
 pub const REACH_CELLS: f32 = 0.75;
 /// Rest offsets of sampled particles end here, in cells: standing on its support, a particle is
@@ -75,6 +77,35 @@ pub const PACKING_MOST: f32 = 20.0;
 pub const FIELD_SPEED: f32 = crate::spec::limits::SPEED_M_S as f32;
 /// The largest change of a field over one substep, in shares of what it depends on, that is resolved.
 pub const FIELD_STIFFEST: f32 = 1e4;
+/// J of a liquid goes no lower.
+pub const LIQUID_J_LEAST: f32 = 0.3;
+/// Nor higher: stretched liquid bears nothing, and closes up at once when it comes together.
+pub const LIQUID_J_MOST: f32 = 1.02;
+/// Elastic strain that a thick liquid holds for a moment, at most.
+pub const LIQUID_STRAIN_MOST: f32 = 0.3;
+/// A liquid's elastic strain that shrinks with the flow is lost so many times faster than it shrinks.
+pub const RECOIL: f32 = 10.0;
+/// Newton steps of a cube root of 0.3 to 2.
+pub const CUBE_ROOT_STEPS: u32 = 4;
+/// For the wave speed in thick liquids, seconds; any length of substeps will do that is not far off.
+pub const USUAL_STEP_S: f32 = 1e-4;
+/// Fixed-point units of a cell full of liquid, and of the largest of its properties.
+pub const FILL_UNITS: f32 = 1_048_576.0;
+/// Where less of a node's spline is on the free side of walls, the node counts for nothing.
+pub const ROOM_LEAST: f32 = 0.02;
+/// Liquid whose nodes are all as full as this is inside.
+pub const FULL: f32 = 0.8;
+/// Share of the difference in density that liquid makes up in the time that sound takes through a cell.
+pub const CALM: f32 = 0.008;
+/// Change of fullness from node to node below which there is no surface.
+pub const SURFACE_LEAST: f32 = 0.02;
+/// Wall nodes of a liquid lose their slip at so many times r + r^2 [`WALL_SOON_S`], r = nu / cell^2: what
+/// viscosity carries through a cell soon enough sticks, water hardly does.
+pub const WALL_GRIP: f32 = 50.0;
+/// See [`WALL_GRIP`], seconds.
+pub const WALL_SOON_S: f32 = 0.1;
+/// Time in which the Gaussians of a liquid go back to their captured shape, seconds.
+pub const LIQUID_SHOWN_S: f32 = 0.25;
 
 /// All of them as WGSL constants.
 pub fn all() -> Vec<(&'static str, Constant)> {
@@ -113,5 +144,21 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("PACKING_MOST", Constant::F32(PACKING_MOST)),
         ("FIELD_SPEED", Constant::F32(FIELD_SPEED)),
         ("FIELD_STIFFEST", Constant::F32(FIELD_STIFFEST)),
+        ("LIQUID", Constant::U32(substance::LIQUID)),
+        ("SLIPS", Constant::U32(SLIPS)),
+        ("LIQUID_J_LEAST", Constant::F32(LIQUID_J_LEAST)),
+        ("LIQUID_J_MOST", Constant::F32(LIQUID_J_MOST)),
+        ("LIQUID_STRAIN_MOST", Constant::F32(LIQUID_STRAIN_MOST)),
+        ("RECOIL", Constant::F32(RECOIL)),
+        ("CUBE_ROOT_STEPS", Constant::U32(CUBE_ROOT_STEPS)),
+        ("USUAL_STEP_S", Constant::F32(USUAL_STEP_S)),
+        ("FILL_UNITS", Constant::F32(FILL_UNITS)),
+        ("ROOM_LEAST", Constant::F32(ROOM_LEAST)),
+        ("FULL", Constant::F32(FULL)),
+        ("CALM", Constant::F32(CALM)),
+        ("SURFACE_LEAST", Constant::F32(SURFACE_LEAST)),
+        ("WALL_GRIP", Constant::F32(WALL_GRIP)),
+        ("WALL_SOON_S", Constant::F32(WALL_SOON_S)),
+        ("LIQUID_SHOWN_S", Constant::F32(LIQUID_SHOWN_S)),
     ]
 }

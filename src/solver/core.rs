@@ -5,6 +5,7 @@ use super::fields::Fields;
 use super::grid::{GridBuffers, Window, allowed_blocks};
 use super::kept::Kept;
 use super::laws::{Laws, rows};
+use super::liquid::LiquidPasses;
 use super::obstacles::{self, PinRecord};
 use super::passes::Passes;
 use super::state::{self, ParticleState, StateBuffers};
@@ -35,7 +36,8 @@ pub(super) struct Params {
     pub momentum_floor: f32,
     pub momentum_bits: u32,
     pub first_substep: u32,
-    pub padding: [u32; 2],
+    pub tension_units: f32,
+    pub viscosity_units: f32,
 }
 
 #[repr(C)]
@@ -60,6 +62,8 @@ pub struct Solver {
     pub(super) pins_buffer: wgpu::Buffer,
     pub(super) objects_buffer: wgpu::Buffer,
     pub(super) laws: Laws,
+    /// Of liquids, where there are any.
+    pub(super) liquid: Option<LiquidPasses>,
     pub(super) object_count: u32,
     pub(super) control: wgpu::Buffer,
     /// The order of the particles is that of `buffers[current]`; a sort writes the other one.
@@ -116,6 +120,7 @@ impl Solver {
             objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,
             object_count,
             laws: Laws::new(gpu)?,
+            liquid: None,
             control: gpu.storage::<Control>("solver.control", 1)?,
             buffers: [StateBuffers::new(gpu, "solver.even", n)?, StateBuffers::new(gpu, "solver.odd", n)?],
             current: 0,
@@ -136,6 +141,7 @@ impl Solver {
             params,
         };
         solver.set_substances(&particles.substances)?;
+        solver.scale_liquids(&states);
         solver.buffers[0].upload(gpu, &states);
         Ok(solver)
     }
@@ -234,6 +240,7 @@ impl Solver {
     }
 
     pub(super) fn replace(&mut self, states: &[ParticleState]) {
+        self.scale_liquids(states);
         self.buffers[self.current].upload(&self.gpu, states);
         self.seen = None;
     }
@@ -249,7 +256,8 @@ impl Solver {
         }
         // Some more room than is needed now, so that a window lasts many frames; where that does not
         // fit, what is needed.
-        let allowed = allowed_blocks(&self.gpu);
+        let wet = self.liquid.is_some();
+        let allowed = allowed_blocks(&self.gpu, wet);
         let roomy = Window::around(low, high, 2 * margin + 4);
         let window = if roomy.block_count() <= allowed { roomy } else { Window::around(low, high, margin) };
         let blocks = window.block_count();
@@ -261,7 +269,7 @@ impl Solver {
         if self.grid.as_ref().is_none_or(|g| g.capacity < blocks) {
             // The old grid goes first, so that both need not fit.
             self.grid = None;
-            self.grid = Some(GridBuffers::new(&self.gpu, (blocks + blocks / 4).min(allowed))?);
+            self.grid = Some(GridBuffers::new(&self.gpu, (blocks + blocks / 4).min(allowed), wet)?);
         }
         self.params.origin = window.origin.into();
         self.params.blocks = window.blocks.into();

@@ -1,6 +1,7 @@
 //! The window of the lattice that is stored, and the buffers over it.
 
 use super::constants::{SCAN_LANES, SCAN_RUN};
+use super::liquid::LiquidFields;
 use super::types::SolverError;
 use crate::gpu::{Gpu, Tier};
 use glam::{IVec3, UVec3};
@@ -38,7 +39,7 @@ impl Window {
     }
 }
 
-/// Buffers over the window's nodes and blocks. All but `velocity` hold zeros between segments.
+/// Buffers over the window's nodes and blocks. All but `velocity` and the liquids' fields hold zeros between segments.
 #[derive(Clone, Debug)]
 pub(super) struct GridBuffers {
     /// Blocks that there is room for.
@@ -53,6 +54,8 @@ pub(super) struct GridBuffers {
     pub chunk_sums: wgpu::Buffer,
     pub active_blocks: wgpu::Buffer,
     pub active_groups: wgpu::Buffer,
+    /// Of liquids, where there are any.
+    pub liquid: Option<LiquidFields>,
 }
 
 /// Bytes of all buffers for one node.
@@ -63,18 +66,19 @@ const CPU_GRID_BYTES: u64 = 768 << 20;
 const GPU_GRID_BYTES: u64 = 6 << 30;
 
 /// Blocks that the device holds.
-pub(super) fn allowed_blocks(gpu: &Gpu) -> u64 {
+pub(super) fn allowed_blocks(gpu: &Gpu, wet: bool) -> u64 {
     let limits = gpu.device.limits();
     let widest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     let bytes = match gpu.tier {
         Tier::Cpu => CPU_GRID_BYTES,
         Tier::Gpu => GPU_GRID_BYTES,
     };
-    (widest / 16).min(bytes / NODE_BYTES) / 64
+    let node_bytes = NODE_BYTES + if wet { LiquidFields::NODE_BYTES } else { 0 };
+    (widest / 16).min(bytes / node_bytes) / 64
 }
 
 impl GridBuffers {
-    pub fn new(gpu: &Gpu, blocks: u64) -> Result<GridBuffers, SolverError> {
+    pub fn new(gpu: &Gpu, blocks: u64, wet: bool) -> Result<GridBuffers, SolverError> {
         let nodes = blocks as usize * 64;
         let chunks = blocks.div_ceil(u64::from(SCAN_LANES * SCAN_RUN)) as usize;
         Ok(GridBuffers {
@@ -89,11 +93,12 @@ impl GridBuffers {
             chunk_sums: gpu.storage::<[u32; 2]>("solver.chunk_sums", chunks)?,
             active_blocks: gpu.storage::<u32>("solver.active_blocks", blocks as usize + 1)?,
             active_groups: gpu.storage::<u32>("solver.active_groups", 4)?,
+            liquid: if wet { Some(LiquidFields::new(gpu, nodes)?) } else { None },
         })
     }
 
     /// What a segment that went wrong may have left behind.
-    pub fn dirty(&self) -> [&wgpu::Buffer; 4] {
-        [&self.sums, &self.marks, &self.cell_count, &self.block_info]
+    pub fn dirty(&self) -> impl Iterator<Item = &wgpu::Buffer> {
+        [&self.sums, &self.marks, &self.cell_count, &self.block_info].into_iter().chain(self.liquid.as_ref().map(|l| &l.fill))
     }
 }

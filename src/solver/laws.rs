@@ -12,9 +12,9 @@ use glam::Mat3;
 passes! {
     /// Passes that know all laws, in place of those for elastic matter alone.
     LawPasses;
-    stress_laws: ["control", "substep", "substance", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "laws", "activation", "stress_laws", "stress"] [Read, Write, Read, Write, Read, Read] SUBSTEP;
-    g2p_laws: ["control", "substep", "substance", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "laws", "activation", "g2p_laws", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read, Read, Write] SUBSTEP;
-    prestress_gather_laws: ["control", "substep", "substance", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "laws", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;
+    stress_laws: ["control", "substep", "substance", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "cube_root", "law_liquid", "laws", "activation", "stress_laws", "stress"] [Read, Write, Read, Write, Read, Read] SUBSTEP;
+    g2p_laws: ["control", "substep", "substance", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "cube_root", "law_liquid", "laws", "activation", "g2p_laws", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read, Read, Write] SUBSTEP;
+    prestress_gather_laws: ["control", "substep", "substance", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "cube_root", "law_liquid", "laws", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;
 }
 
 /// Three rows of a matrix, each with a word to spare.
@@ -86,6 +86,7 @@ impl Solver {
             self.passes.prestress_gather = prestress_gather_laws;
             self.laws.all = true;
         }
+        self.wet(substances);
         if !substances.iter().any(|s| s.shown_stretch().is_some()) {
             self.laws.shown = None;
         } else if self.laws.shown.is_none() {

@@ -19,6 +19,7 @@ mod fields;
 mod grid;
 mod kept;
 mod laws;
+mod liquid;
 mod obstacles;
 mod prestress;
 mod state;
@@ -38,7 +39,7 @@ pub use bench::{BenchReport, bench_substep};
 pub use change::Moduli;
 pub use core::Solver;
 pub use fields::velocity_change;
-pub use substance::{Activation, Substance};
+pub use substance::{Activation, Substance, liquid_bulk_pa};
 pub use types::{Advance, Collider, Field, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError};
 
 /// Every pass of the solver, for validation and keys.
@@ -46,6 +47,7 @@ pub fn kernels() -> Vec<KernelSource> {
     let mut all = passes::kernels();
     all.extend(laws::kernels());
     all.extend(fields::kernels());
+    all.extend(liquid::kernels());
     all
 }
 
@@ -55,4 +57,4 @@ pub fn shader_text() -> String {
 }
 
 /// Raised whenever the same input gives other bits.
-pub const VERSION: u32 = 6;
+pub const VERSION: u32 = 7;

@@ -1,6 +1,6 @@
 //! What particles are made of: a table of substances, a row for each, that the passes read.
 
-use super::constants::{J_LEAST, LOOSE_MOST};
+use super::constants::{J_LEAST, LIQUID_J_MOST, LOOSE_MOST};
 use crate::spec::ElasticModel;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
@@ -50,6 +50,14 @@ pub enum Substance {
         theta_s: f32,
         /// Exponent of the stiffness over the packing: exp(hardening (1 - Jp)).
         hardening: f32,
+    },
+    /// Flows and wets. Its particles have no shear modulus; their bulk modulus stands for that it
+    /// cannot be compressed ([`liquid_bulk_pa`]).
+    Liquid {
+        /// Dynamic viscosity, Pa s.
+        viscosity_pa_s: f32,
+        /// Surface tension, N/m.
+        surface_tension_n_m: f32,
     },
 }
 
@@ -115,6 +123,7 @@ pub(super) const PLASTIC: u32 = 2;
 pub(super) const VISCOPLASTIC: u32 = 3;
 pub(super) const SAND: u32 = 4;
 pub(super) const SNOW: u32 = 5;
+pub(super) const LIQUID: u32 = 6;
 
 impl Substance {
     pub(super) fn record(&self) -> SubstanceRecord {
@@ -129,6 +138,7 @@ impl Substance {
                 (SAND, 0, [std::f32::consts::SQRT_2 * tan, cohesion_pa / tan, 0.0])
             }
             Substance::Snow { theta_c, theta_s, hardening } => (SNOW, 0, [*theta_c, *theta_s, *hardening]),
+            Substance::Liquid { viscosity_pa_s, surface_tension_n_m } => (LIQUID, 0, [*viscosity_pa_s, *surface_tension_n_m, 0.0]),
         };
         let [a, b, c] = values;
         SubstanceRecord { kind, model, shown: self.shown_stretch().unwrap_or_default(), values: [a, b, c, 0.0, 0.0, 0.0] }
@@ -142,7 +152,13 @@ impl Substance {
             Substance::Plastic { .. } => Some([0.3, 3.0]),
             Substance::Viscoplastic { .. } => Some([0.4, 2.5]),
             Substance::Sand { .. } | Substance::Snow { .. } => Some([0.7, 1.4]),
+            Substance::Liquid { .. } => Some([0.6, 1.7]),
         }
+    }
+
+    /// Whether it flows without any shear modulus.
+    pub fn is_liquid(&self) -> bool {
+        matches!(self, Substance::Liquid { .. })
     }
 
     /// Whether it is elastic and nothing else, so that the plain passes do.
@@ -175,6 +191,9 @@ impl Substance {
                 let volume = f.determinant().max(J_LEAST);
                 (Mat3::from_diagonal(Vec3::splat(volume.min(1.0).cbrt())), volume.ln().clamp(0.0, LOOSE_MOST))
             }
+            // What a soft solid was squeezed by would burst it as a liquid: it takes its volume back in
+            // its own time, as its density is seen.
+            Substance::Liquid { .. } => (Mat3::from_diagonal(Vec3::splat(f.determinant().clamp(0.98, LIQUID_J_MOST).cbrt())), 0.0),
             _ => (f, self.first_history()),
         }
     }
@@ -193,9 +212,18 @@ impl Substance {
             Substance::Snow { theta_c, theta_s, hardening } => {
                 *theta_c > 0.0 && *theta_c < 1.0 && *theta_s > 0.0 && *theta_s < 1.0 && (0.0..=20.0).contains(hardening)
             }
+            Substance::Liquid { viscosity_pa_s, surface_tension_n_m } => positive.contains(viscosity_pa_s) && positive.contains(surface_tension_n_m),
         };
         (!fine).then(|| format!("{self:?}"))
     }
+}
+
+/// Bulk modulus that a weakly compressible liquid needs, Pa: sound ten times as fast as anything flows
+/// compresses it by v^2 / (2 c^2), half a per cent, and its own weight by as much (Monaghan 1994).
+/// `depth_m` is the height that it stands or falls through, `speed_m_s` what it is thrown with.
+pub fn liquid_bulk_pa(depth_m: f32, speed_m_s: f32, gravity_m_s2: f32, density_kg_m3: f32) -> f32 {
+    let fastest_2 = speed_m_s * speed_m_s + 2.0 * gravity_m_s2 * depth_m;
+    100.0 * density_kg_m3 * fastest_2
 }
 
 /// The rows that the particles' tags name.

@@ -17,9 +17,9 @@ pub struct Particles {
     pub volume_m3: Vec<f32>,
     /// Mass over that volume.
     pub density_kg_m3: Vec<f32>,
-    /// Young's modulus E.
+    /// Young's modulus E; of a liquid, which has none, the bulk modulus.
     pub young_pa: Vec<f32>,
-    /// Poisson's ratio, above -1 and below 0.5.
+    /// Poisson's ratio, above -1 and below 0.5; means nothing for a liquid.
     pub poisson: Vec<f32>,
     /// Row of `substances` that each is made of.
     pub substance: Vec<u16>,
@@ -43,6 +43,9 @@ impl Particles {
     /// Lamé's two moduli (mu, lambda) of one particle, in pascals.
     pub fn lame_pa(&self, index: usize) -> (f32, f32) {
         let (e, nu) = (self.young_pa[index], self.poisson[index]);
+        if self.substances.get(usize::from(self.substance[index])).is_some_and(Substance::is_liquid) {
+            return (0.0, e);
+        }
         (e / (2.0 * (1.0 + nu)), e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)))
     }
 }

@@ -54,7 +54,7 @@ struct Probed {
 fn probe(substances: &[Substance], trials: &[DMat3], numbers: &[[f32; 4]]) -> Vec<Probed> {
     let gpu = Gpu::shared_for_tests().expect("a device");
     let laws = crate::solver::kernels().into_iter().find(|k| k.label == "solver.prestress_gather_laws").expect("a pass");
-    let of_laws = |name: &str| ["substance", "material", "svd", "hencky", "law"].iter().any(|part| name.contains(part));
+    let of_laws = |name: &str| ["substance", "material", "svd", "hencky", "cube_root", "law"].iter().any(|part| name.contains(part));
     let mut parts: Vec<_> = laws.parts.into_iter().filter(|(name, _)| of_laws(name)).collect();
     parts.push(("tests/probe", PROBE));
     let source = KernelSource {
@@ -166,9 +166,22 @@ pub(in crate::solver) fn all_laws() -> Vec<Substance> {
     ]
 }
 
+/// A thin one and a thick one.
+pub(super) fn liquids() -> [Substance; 2] {
+    [1e-3, 100.0].map(|viscosity_pa_s| Substance::Liquid { viscosity_pa_s, surface_tension_n_m: 0.07 })
+}
+
 #[test]
 fn each_law_answers_as_its_twin_does() {
-    let substances = all_laws();
+    answers_agree(&all_laws());
+}
+
+#[test]
+fn liquids_answer_as_their_twins_do() {
+    answers_agree(&liquids());
+}
+
+fn answers_agree(substances: &[Substance]) {
     let all = trials(substances.len() * 400, &[1e-4, 5e-3, 3e-2, 0.1, 0.4]);
     let history = |k: usize| match &substances[k % substances.len()] {
         Substance::Snow { .. } => [0.7, 1.0, 1.1][k / substances.len() % 3],
@@ -177,10 +190,10 @@ fn each_law_answers_as_its_twin_does() {
     };
     let numbers: Vec<[f32; 4]> = (0..all.len()).map(|k| [4e4, 6e4, history(k), 5e-4]).collect();
     let mut yielded = vec![0; substances.len()];
-    for (k, (trial, got)) in all.iter().zip(probe(&substances, &all, &numbers)).enumerate() {
+    for (k, (trial, got)) in all.iter().zip(probe(substances, &all, &numbers)).enumerate() {
         let [mu, lambda, history, dt_s] = numbers[k].map(f64::from);
         let substance = &substances[k % substances.len()];
-        let want: Answer = respond(substance, *trial, &Matter { mu, lambda, history, activation: 0.5 }, dt_s);
+        let want: Answer = respond(substance, *trial, &Matter { mu, lambda, history, activation: 0.5, gradient: DMat3::ZERO }, dt_s);
         yielded[k % substances.len()] += usize::from(want.f != *trial);
         let name = format!("{substance:?}, F = {trial}");
         assert!(got.tau.is_finite() && got.f.is_finite() && got.history.is_finite(), "{name}");
@@ -199,6 +212,11 @@ fn each_law_answers_as_its_twin_does() {
         assert!((got.history - want.history).abs() < 2e-5 * want.history.abs().max(1.0), "{name}: history {} and {}", got.history, want.history);
     }
     for (substance, count) in substances.iter().zip(yielded) {
+        // All shear of a liquid yields.
+        if substance.is_liquid() {
+            assert_eq!(count, 400);
+            continue;
+        }
         let solid = substance.is_elastic() || matches!(substance, Substance::Muscle { .. });
         assert!(if solid { count == 0 } else { (60..400).contains(&count) }, "{substance:?}: {count} yielded");
     }
@@ -207,11 +225,11 @@ fn each_law_answers_as_its_twin_does() {
 #[test]
 fn a_return_is_where_it_goes() {
     // What has yielded does not yield again without more strain, and what is outer is symmetric.
-    let substances = all_laws();
+    let substances: Vec<_> = all_laws().into_iter().chain(liquids()).collect();
     let all = trials(substances.len() * 50, &[3e-2, 0.1]);
     for (k, trial) in all.iter().enumerate() {
         let substance = &substances[k % substances.len()];
-        let matter = Matter { mu: 4e4, lambda: 6e4, history: f64::from(substance.first_history()), activation: 0.5 };
+        let matter = Matter { mu: 4e4, lambda: 6e4, history: f64::from(substance.first_history()), activation: 0.5, gradient: DMat3::ZERO };
         let first = respond(substance, *trial, &matter, 5e-4);
         let again = respond(substance, first.f, &Matter { history: first.history, ..matter }, 0.0);
         assert!(entries(again.tau - first.tau) < 1e-6 * entries(first.tau).max(1.0), "{substance:?}");

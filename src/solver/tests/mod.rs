@@ -5,6 +5,7 @@ mod contact;
 mod fields;
 pub(super) mod laws;
 mod library;
+mod liquid;
 mod motion;
 mod prestress;
 mod twins;

@@ -13,8 +13,8 @@ use crate::solver::{Collider, PinRegion, Plane, Settings};
 use crate::spec::{BoxShape, CapsuleShape, ColliderShape, ElasticModel, PlaneShape, SphereShape};
 use glam::{IVec3, Mat3, Vec3};
 
-const CELL_M: f32 = 0.05;
-const DT_S: f32 = 4e-4;
+pub(super) const CELL_M: f32 = 0.05;
+pub(super) const DT_S: f32 = 4e-4;
 
 /// Numbers between -1 and 1 that look random and are always the same.
 pub(super) struct Noise(pub u32);
@@ -35,7 +35,7 @@ fn scene() -> (Solver, Vec<ParticleState>) {
     scene_of([Substance::Elastic(ElasticModel::Corotated), Substance::Elastic(ElasticModel::NeoHookean)])
 }
 
-fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
+pub(super) fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
     let (mut noise, mut past) = (Noise(7), Noise(5));
     let mut particles = block(Vec3::new(0.0, 0.0, 0.01), Vec3::splat(0.2), 0.025, 2e5, 0.3);
     let other = block(Vec3::new(0.19, 0.05, 0.02), Vec3::splat(0.1), 0.02, 5e4, 0.2);
@@ -85,26 +85,26 @@ fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
     (solver, states)
 }
 
-fn gpu() -> Gpu {
+pub(super) fn gpu() -> Gpu {
     Gpu::shared_for_tests().expect("a device")
 }
 
-fn run(build: impl FnOnce(&mut Recording)) {
+pub(super) fn run(build: impl FnOnce(&mut Recording)) {
     let mut recording = Recording::default();
     build(&mut recording);
     gpu().submit(&recording);
 }
 
-fn sort(solver: &mut Solver) {
+pub(super) fn sort(solver: &mut Solver) {
     let bound = solver.bind_both().expect("bound");
     run(|recording| solver.record_sort(&bound[solver.current], recording));
     solver.current = 1 - solver.current;
 }
 
-const SUBSTEP: Substep = Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job: 0, since_s: 0.003 };
+pub(super) const SUBSTEP: Substep = Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job: 0, since_s: 0.003 };
 
 /// Storage index of a node, z first.
-fn stored(node: &[i32; 3], solver: &Solver) -> usize {
+pub(super) fn stored(node: &[i32; 3], solver: &Solver) -> usize {
     let cell = IVec3::new(node[2], node[1], node[0]) - IVec3::from(solver.params.origin);
     twin::sort::index(cell.as_uvec3(), &solver.params) as usize
 }
@@ -145,6 +145,7 @@ fn one_substep_of_other_laws() {
     follows_the_twins([muscle, hardening]);
     follows_the_twins([viscoplastic, sand]);
     follows_the_twins([snow.clone(), snow]);
+    follows_the_twins(super::laws::liquids());
 }
 
 fn follows_the_twins(substances: [Substance; 2]) {
@@ -163,6 +164,8 @@ fn follows_the_twins(substances: [Substance; 2]) {
 
     // Logarithms lose digits; the rotation of what is inside out is found by turns that come to it slowly.
     let exact = if substances.iter().all(Substance::is_elastic) { 1e-5 } else { 5e-5 };
+    // What was inside out or flat is neither any more when a liquid has answered.
+    let exact = if substances.iter().any(Substance::is_liquid) { 5e-4 } else { exact };
     let tolerance = |s: &ParticleState| if s.f().determinant() < crate::solver::constants::FLAT { 2e-3 } else { exact };
 
     // Stress into A.
@@ -228,6 +231,8 @@ fn follows_the_twins(substances: [Substance; 2]) {
         let flat = want.f().determinant() < crate::solver::constants::FLAT;
         assert!(got.f().abs_diff_eq(want.f(), if flat { 2e-3 } else { 3e-5 }), "F of {name}: {} and {}", got.f(), want.f());
         let scale = want.affine.iter().fold(0f32, |a, b| a.max(b.abs()));
+        // Where pins hold all around hardly anything is left of A but rounding.
+        let scale = scale.max(0.1 * want.mass_kg);
         let worst = got.affine.iter().zip(&want.affine).fold(0f32, |a, (g, w)| a.max((g - w).abs()));
         assert!(worst <= tolerance(want) * scale, "A of {name}: off by {worst} of {scale}");
         assert!((got.history - want.history).abs() < 3e-5 * want.history.abs().max(1.0), "history of {name}: {} and {}", got.history, want.history);
@@ -236,9 +241,9 @@ fn follows_the_twins(substances: [Substance; 2]) {
     for (s, (before, after)) in before.iter().zip(shown_before.iter().zip(&shown)) {
         let matrix = |rows: &[[f32; 4]; 3]| Mat3::from_cols_array_2d(&rows.map(|r| [r[0], r[1], r[2]])).transpose();
         match substances[s.substance()].shown_stretch() {
-            Some(bounds) => {
+            Some(_) => {
                 let gradient = twin::gather(&want, s.position_m, &around.params).1;
-                let want = twin::laws::shown(matrix(before).as_dmat3(), gradient, f64::from(DT_S), bounds).as_mat3();
+                let want = twin::laws::shown(&substances[s.substance()], matrix(before).as_dmat3(), gradient, f64::from(DT_S)).as_mat3();
                 assert!(matrix(after).abs_diff_eq(want, 2e-5), "shown of particle {}: {} and {want}", s.index, matrix(after));
             }
             None => assert_eq!(before, after),

@@ -1,7 +1,10 @@
 //! The laws, in f64 and by other means than the shaders': eigenvectors of F F^T, closed forms.
 
-use super::material::kirchhoff;
-use crate::solver::constants::{LOOSE_MOST, PACKING_LEAST, PACKING_MOST, STRETCH_LEAST, STRETCH_MOST, YIELD_FLOOR};
+use super::material::{kirchhoff, polar};
+use crate::solver::constants::{
+    LIQUID_J_LEAST, LIQUID_J_MOST, LIQUID_SHOWN_S, LIQUID_STRAIN_MOST, LOOSE_MOST, PACKING_LEAST, PACKING_MOST, RECOIL, STRETCH_LEAST, STRETCH_MOST,
+    YIELD_FLOOR,
+};
 use crate::solver::substance::Substance;
 use crate::spec::ElasticModel;
 use glam::{DMat3, DVec3};
@@ -13,6 +16,8 @@ pub struct Matter {
     pub lambda: f64,
     pub history: f64,
     pub activation: f64,
+    /// Of velocity.
+    pub gradient: DMat3,
 }
 
 /// What stays of a trial F, what is remembered, the Kirchhoff stress.
@@ -170,12 +175,30 @@ pub fn respond(substance: &Substance, trial: DMat3, m: &Matter, dt_s: f64) -> An
             answer.tau = principal(axes, stress * stiffening);
             answer
         }
+        Substance::Liquid { viscosity_pa_s, .. } => {
+            let j = trial.determinant().clamp(f64::from(LIQUID_J_LEAST), f64::from(LIQUID_J_MOST));
+            let relaxing = dt_s * m.lambda / f64::from(*viscosity_pa_s).max(1e-30);
+            let (s, axes) = stretches(trial);
+            let stretch = principal(axes, s);
+            let mean = (stretch.x_axis.x + stretch.y_axis.y + stretch.z_axis.z) / 3.0;
+            let strain = (stretch * (1.0 / mean.max(1e-3)) - DMat3::IDENTITY) * (1.0 / (1.0 + relaxing));
+            let work = |a: DMat3, b: DMat3| a.to_cols_array().iter().zip(b.to_cols_array()).map(|(a, b)| a * b).sum::<f64>();
+            let square = work(strain, strain).max(1e-30);
+            let growing = dt_s * work(strain, m.gradient) / square;
+            let lasting = if growing < 0.0 { (1.0 + f64::from(RECOIL) * growing).max(0.0) } else { 1.0 };
+            let bounded = if trial.determinant() > 0.0 { lasting.min(f64::from(LIQUID_STRAIN_MOST) / square.sqrt()) } else { 0.0 };
+            let shape = DMat3::IDENTITY + strain * bounded;
+            let tau = DMat3::IDENTITY * (m.lambda * (j - 1.0).min(0.0)) + strain * (bounded * 2.0 * m.lambda * j);
+            Answer { f: shape * (j / shape.determinant()).cbrt(), history: m.history, tau }
+        }
     }
 }
 
 /// `g2p_laws.wgsl`: the shown deformation after a substep.
-pub fn shown(old: DMat3, gradient: DMat3, dt_s: f64, [least, most]: [f32; 2]) -> DMat3 {
+pub fn shown(substance: &Substance, old: DMat3, gradient: DMat3, dt_s: f64) -> DMat3 {
+    let Some([least, most]) = substance.shown_stretch() else { return old };
     let f = old + gradient * old * dt_s;
     let (s, axes) = stretches(f);
-    restretched(f, axes, s, each(s, |s| s.clamp(f64::from(least), f64::from(most))))
+    let f = restretched(f, axes, s, each(s, |s| s.clamp(f64::from(least), f64::from(most))));
+    if substance.is_liquid() { f + (polar(f) - f) * (dt_s / f64::from(LIQUID_SHOWN_S)).min(1.0) } else { f }
 }

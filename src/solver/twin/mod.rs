@@ -1,11 +1,12 @@
 //! The solver's passes in plain Rust, for the tests: the same formulas on a map of nodes, sums in f64.
 
 pub mod laws;
+pub mod liquid;
 pub mod material;
 pub mod prestress;
 pub mod sort;
 
-use super::constants::{GAP_STEPS, REST_CELLS_MAX};
+use super::constants::{GAP_STEPS, REST_CELLS_MAX, SLIPS, WALL_GRIP, WALL_SOON_S};
 use super::core::Params;
 use super::obstacles::{ColliderRecord, PinRecord};
 use super::state::ParticleState;
@@ -21,6 +22,12 @@ pub struct Node {
     /// Contact marks of the ground and of the other colliders.
     pub marks: [u32; 2],
     pub velocity: Vec3,
+    /// Of surface tension.
+    pub pull_m_s2: Vec3,
+    /// Kinematic, of liquid.
+    pub viscosity_m2_s: f32,
+    /// How far walls hold it, 0 to 1.
+    pub held: f32,
 }
 
 /// Occupied nodes by their lattice coordinates, z first.
@@ -37,9 +44,9 @@ pub struct Surroundings<'a> {
 
 impl Surroundings<'_> {
     /// What the law of a particle lets stand of a trial F; a muscle is at half its strength.
-    pub fn respond(&self, state: &ParticleState, trial: DMat3, dt_s: f32) -> laws::Answer {
+    pub fn respond(&self, state: &ParticleState, trial: DMat3, gradient: DMat3, dt_s: f32) -> laws::Answer {
         let (mu, lambda, history) = (f64::from(state.mu_pa), f64::from(state.lambda_pa), f64::from(state.history));
-        laws::respond(&self.substances[state.substance()], trial, &laws::Matter { mu, lambda, history, activation: 0.5 }, f64::from(dt_s))
+        laws::respond(&self.substances[state.substance()], trial, &laws::Matter { mu, lambda, history, activation: 0.5, gradient }, f64::from(dt_s))
     }
 }
 
@@ -73,7 +80,7 @@ fn affine(state: &ParticleState) -> DMat3 {
 pub fn stress(states: &mut [ParticleState], around: &Surroundings, dt_s: f32) {
     let params = &around.params;
     for s in states {
-        let tau = around.respond(s, s.f().as_dmat3(), 0.0).tau;
+        let tau = around.respond(s, s.f().as_dmat3(), DMat3::ZERO, 0.0).tau;
         let weight = f64::from(dt_s) * 4.0 * f64::from(params.per_m).powi(2) * f64::from(s.volume_m3);
         s.set_affine((affine(s) - tau * weight).as_mat3());
     }
@@ -109,8 +116,9 @@ fn nearest(s: &ParticleState, colliders: &[ColliderRecord], first: usize, params
         if touch.distance_m > params.reach_m + REST_CELLS_MAX * params.cell_m || gap_m >= params.reach_m {
             continue;
         }
+        let slips = if s.mu_pa == 0.0 { SLIPS } else { 0 };
         let near = 1.0 - (gap_m / params.reach_m).clamp(0.0, 1.0);
-        let mark = (((near * GAP_STEPS) as u32 + 1) << 10) | ((c + first) as u32 * 8 + touch.face);
+        let mark = (((near * GAP_STEPS) as u32 + 1) << 11) | ((c + first) as u32 * 8 + touch.face) | slips;
         if best.is_none_or(|(most, _)| mark > most) {
             best = Some((mark, collider.normal(touch.face, s.position_m)));
         }
@@ -120,21 +128,22 @@ fn nearest(s: &ParticleState, colliders: &[ColliderRecord], first: usize, params
 
 /// Metres between a marked node's nearest particle and its rest.
 pub fn mark_gap_m(mark: u32, params: &Params) -> f32 {
-    params.reach_m * (1.0 - ((mark >> 10) - 1) as f32 / GAP_STEPS)
+    params.reach_m * (1.0 - ((mark >> 11) - 1) as f32 / GAP_STEPS)
 }
 
 /// `grid.wgsl`: velocities after gravity, contact and pins.
 pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32, since_s: f32) {
     for (node, value) in grid.iter_mut() {
         let x = Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * around.params.cell_m;
-        let mut v = (value.momentum / value.mass).as_vec3() + Vec3::from(around.params.gravity_m_s2) * dt_s;
+        let mut v = (value.momentum / value.mass).as_vec3() + (Vec3::from(around.params.gravity_m_s2) + value.pull_m_s2) * dt_s;
         for mark in [value.marks[1], value.marks[0]] {
             if mark != 0 {
                 v = respond(v, mark, x, around, dt_s);
+                value.held = value.held.max(held_by(mark, x, around, dt_s, value.viscosity_m2_s));
             }
         }
         if let Some(pin) = around.pins.iter().find(|pin| pinned(pin, x, since_s)) {
-            v = Vec3::from_slice(&pin.velocity);
+            (v, value.held) = (Vec3::from_slice(&pin.velocity), 0.0);
         }
         value.velocity = v;
     }
@@ -158,8 +167,17 @@ fn respond(v: Vec3, mark: u32, x: Vec3, around: &Surroundings, dt_s: f32) -> Vec
     let resting = 4.0 * Vec3::from(around.params.gravity_m_s2).length() * dt_s;
     let leaving = allowed.max(restitution * (-approach - resting).max(0.0));
     let sliding = v - normal * approach;
+    let friction = if mark & SLIPS == 0 { friction } else { 0.0 };
     let (speed, grip) = (sliding.length(), friction * (leaving - approach));
     normal * leaving + if speed > grip { sliding * (1.0 - grip / speed) } else { Vec3::ZERO }
+}
+
+/// How far a wall holds what slides along it.
+fn held_by(mark: u32, x: Vec3, around: &Surroundings, dt_s: f32, viscosity_m2_s: f32) -> f32 {
+    let distance_m = around.colliders[(mark & 1023) as usize >> 3].touch(x).distance_m;
+    let rate = viscosity_m2_s * around.params.per_m.powi(2);
+    let grip = dt_s * WALL_GRIP * rate * (1.0 + rate * WALL_SOON_S);
+    if mark & SLIPS == 0 || distance_m > 0.5 * around.params.cell_m { 0.0 } else { grip / (1.0 + grip) }
 }
 
 /// Velocity and its gradient at a particle.
@@ -183,7 +201,8 @@ pub fn g2p(states: &mut [ParticleState], grid: &Grid, around: &Surroundings, dt_
         let mut v = v.as_vec3() + around.accelerations[s.object() as usize] * dt_s;
         for collider in around.colliders {
             let touch = collider.touch(x);
-            let behind_m = s.rest_m.min(0.0) - touch.distance_m;
+            let slipping_m = collider.touch(s.position_m).distance_m.clamp(0.0, s.rest_m.max(0.0));
+            let behind_m = if s.mu_pa == 0.0 { slipping_m } else { s.rest_m.min(0.0) } - touch.distance_m;
             if behind_m > 0.0 {
                 let normal = collider.normal(touch.face, x);
                 x += normal * behind_m;
@@ -191,7 +210,7 @@ pub fn g2p(states: &mut [ParticleState], grid: &Grid, around: &Surroundings, dt_
             }
         }
         let f = (DMat3::IDENTITY + gradient * f64::from(dt_s)) * s.f().as_dmat3();
-        let answer = around.respond(s, f, dt_s);
+        let answer = around.respond(s, f, gradient, dt_s);
         let weight = f64::from(dt_next_s) * 4.0 * f64::from(params.per_m).powi(2) * f64::from(s.volume_m3);
         s.set_affine((gradient * f64::from(s.mass_kg) - answer.tau * weight).as_mat3());
         s.set_f(answer.f.as_mat3());

@@ -3,7 +3,8 @@
 use crate::solver::core::Solver;
 use crate::solver::state::ParticleState;
 use crate::solver::substance::Substance;
-use crate::solver::types::{Particles, SolverError};
+use crate::solver::types::{Collider, Particles, SolverError};
+use crate::spec::{ColliderShape, PlaneShape};
 use glam::{DVec3, Vec3};
 
 /// A box filled at a spacing, 1000 kg/m^3, fixed corotated.
@@ -44,6 +45,23 @@ pub(in crate::solver) fn append(to: &mut Particles, from: Particles, substance: 
     to.substance.extend(vec![to.substances.len() as u16; n]);
     to.substances.push(substance);
     to.object.extend(vec![object; n]);
+}
+
+/// A box filled at a spacing with a liquid.
+pub(in crate::solver) fn pool(low_m: Vec3, size_m: Vec3, spacing_m: f32, density_kg_m3: f32, bulk_pa: f32, substance: Substance) -> Particles {
+    let mut particles = block(low_m, size_m, spacing_m, bulk_pa, 0.0);
+    particles.density_kg_m3.fill(density_kg_m3);
+    particles.substances = vec![substance];
+    particles
+}
+
+/// Frictionless planes around a box, without floor and lid.
+pub(super) fn walls(low_m: Vec3, high_m: Vec3) -> Vec<Collider> {
+    let plane = |point_m: Vec3, normal: Vec3| {
+        let shape = PlaneShape { point_m: point_m.as_dvec3().into(), normal: normal.as_dvec3().into() };
+        Collider { shape: ColliderShape::Plane(shape), friction: 0.0, restitution: 0.0 }
+    };
+    vec![plane(low_m, Vec3::X), plane(high_m, Vec3::NEG_X), plane(low_m, Vec3::Y), plane(high_m, Vec3::NEG_Y)]
 }
 
 /// Sets velocity + spin x (x - centre) on every particle.

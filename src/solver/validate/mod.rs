@@ -5,6 +5,8 @@ mod captured;
 mod flakes;
 mod free;
 mod grains;
+mod liquid_flow;
+mod liquid_rest;
 mod loaded;
 mod muscles;
 mod pulled;
@@ -13,7 +15,7 @@ mod sliding;
 mod waves;
 
 #[cfg(test)]
-pub(super) use bodies::{append, block};
+pub(super) use bodies::{append, block, pool};
 #[cfg(test)]
 pub(super) use captured::stems;
 
@@ -123,6 +125,13 @@ pub const CASES: &[Case] = &[
     Case { name: "Bingham", quick: true, run: pulled::bingham },
     Case { name: "V17", quick: true, run: flakes::packs },
     Case { name: "muscle", quick: true, run: muscles::shortens },
+    Case { name: "V18", quick: true, run: liquid_flow::dam_break },
+    Case { name: "V19", quick: true, run: liquid_rest::hydrostatic },
+    Case { name: "V19 sloshing", quick: false, run: liquid_rest::sloshing },
+    Case { name: "V20", quick: true, run: liquid_flow::viscous },
+    Case { name: "V21", quick: false, run: liquid_rest::swinging },
+    Case { name: "V22", quick: true, run: liquid_rest::laplace },
+    Case { name: "V26 liquid", quick: true, run: liquid_flow::same_bits },
     Case { name: "V26", quick: true, run: repeat::same_bits },
     Case { name: "left alone", quick: false, run: captured::left_alone },
     Case { name: "dropped", quick: false, run: captured::dropped },
