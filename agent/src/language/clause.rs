@@ -344,7 +344,7 @@ pub fn qualifies(verb: Verb) -> &'static [Property] {
     match verb {
         Verb::Jump | Verb::Somersault => &[Property::Height, Property::Strength, Property::Hardness, Property::Size, Property::Speed],
         Verb::Fall | Verb::Drop | Verb::Lift => &[Property::Height, Property::Size],
-        Verb::Push(_) | Verb::Pull | Verb::Blow => &[Property::Strength, Property::Hardness, Property::Speed, Property::Size],
+        Verb::Push(_) | Verb::Pull | Verb::Blow | Verb::Field(_) => &[Property::Strength, Property::Hardness, Property::Speed, Property::Size],
         Verb::Throw => &[Property::Strength, Property::Hardness, Property::Speed, Property::Height, Property::Distance, Property::Size],
         Verb::Spin | Verb::Roll => &[Property::Speed, Property::Strength, Property::Hardness],
         Verb::Zoom(_) | Verb::Look | Verb::Orbit => &[Property::Distance, Property::FieldOfView, Property::Speed],

@@ -5,7 +5,7 @@ use super::clauses::{adjust, camera, motion, place};
 use super::directions;
 use super::lexicon::SECTIONS;
 use super::numbers::UNITS;
-use super::sense::{Form, Part, Property, Sense, Unbuilt, Verb};
+use super::sense::{Field, Form, Part, Property, Sense, Unbuilt, Verb};
 use super::tests::Stage;
 use super::{Reply, say};
 use std::fmt::Write;
@@ -34,6 +34,13 @@ const EXAMPLES: &[(&str, &[&str])] = &[
             "a backflip",
             "pull it left with 3 m/s2 from 0.2 s to 1 s",
             "strong wind from the front",
+            "a gusty wind of 10 m/s from the left | a stronger wind",
+            "swirl it clockwise",
+            "explode at 1 s",
+            "swing it to and fro from 0.5 s to 2 s",
+            "shake it for 1 s",
+            "keep it spinning",
+            "air resistance | no air resistance",
             "hold the base | let go at 1 s",
             "spin it | stop spinning",
         ],
@@ -180,6 +187,8 @@ fn meaning(sense: &Sense) -> String {
         Sense::Verb(Verb::Push(strength)) if *strength < 0.0 => "a gentle push".to_owned(),
         Sense::Verb(Verb::Push(_)) => "push".to_owned(),
         Sense::Verb(Verb::Zoom(sign)) => if *sign > 0.0 { "camera closer" } else { "camera further away" }.to_owned(),
+        Sense::Verb(Verb::Field(field)) => field_name(*field).to_owned(),
+        Sense::Gusty => "of wind: in gusts".to_owned(),
         Sense::Verb(verb) => format!("{verb:?}").to_lowercase(),
         Sense::Change(sign) => if *sign > 0.0 { "more" } else { "less" }.to_owned(),
         Sense::Degree(degree) => format!("so much: {} steps", say::short(*degree)),
@@ -255,6 +264,19 @@ fn part_name(part: Part) -> &'static str {
     }
 }
 
+fn field_name(field: Field) -> &'static str {
+    match field {
+        Field::Swirl => "swirling air",
+        Field::Explode => "a blast from its middle",
+        Field::Attract => "a pull to its middle",
+        Field::Air => "the drag of air",
+        Field::Water => "the drag of water",
+        Field::Sway => "driven to and fro",
+        Field::Shake => "driven to and fro, fast",
+        Field::Motor => "kept turning",
+    }
+}
+
 fn unbuilt_name(what: Unbuilt) -> &'static str {
     match what {
         Unbuilt::Liquid => "liquids",
@@ -266,7 +288,7 @@ fn unbuilt_name(what: Unbuilt) -> &'static str {
         Unbuilt::Muscle => "things that move themselves",
         Unbuilt::Heat => "heat",
         Unbuilt::Fracture => "breaking",
-        Unbuilt::Deform => "squeezing and shaking",
+        Unbuilt::Deform => "squeezing and bending",
         Unbuilt::Look => "colours and light",
         Unbuilt::Scene => "size and number of things",
         Unbuilt::Playback => "playback",

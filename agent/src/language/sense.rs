@@ -53,6 +53,29 @@ pub enum Verb {
     Orbit,
     /// Back to what it was.
     Reset,
+    /// Is driven by a field.
+    Field(Field),
+}
+
+/// What drives things all along, beside pulls and wind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    /// Air that circles.
+    Swirl,
+    /// A blast.
+    Explode,
+    /// Towards its own middle.
+    Attract,
+    /// The drag of air.
+    Air,
+    /// The drag of water.
+    Water,
+    /// To and fro.
+    Sway,
+    /// To and fro, fast.
+    Shake,
+    /// Keeps turning.
+    Motor,
 }
 
 /// What can be more or less.
@@ -287,6 +310,8 @@ pub enum Sense {
     Turn(TurnWord),
     /// The name of a version.
     Version(u32),
+    /// Of wind: it comes in gusts.
+    Gusty,
     /// The edge of what it stands on.
     Edge,
     /// "above the ground" after a length.

@@ -277,15 +277,6 @@ fn drag_slows_exponentially_and_however_strong() {
     assert!((mean_velocity(&solver) - DVec3::Y).length() < 1e-3);
 }
 
-#[test]
-fn a_falling_body_reaches_its_terminal_speed() {
-    let settings = Settings { gravity_m_s2: Vec3::new(0.0, 0.0, -9.81), ..driven_by(&["-2.5 * length(v) * v"]) };
-    let mut solver = solver(settings, &small(Vec3::ZERO));
-    go(&mut solver, 1.5);
-    let (v, expected) = (-mean_velocity(&solver).z, (9.81f64 / 2.5).sqrt());
-    assert!((v / expected - 1.0).abs() < 0.02, "{v} and {expected}");
-}
-
 /// Seconds between the first and the last crossing of zero, over the number of half periods.
 fn half_period_s(solver: &mut Solver, until_s: f64, step_s: f64) -> f64 {
     let mut crossings = Vec::new();

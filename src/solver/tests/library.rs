@@ -48,20 +48,6 @@ fn drag_of_both_kinds_follows_its_formula() {
 }
 
 #[test]
-fn a_vortex_carries_what_floats_along_round_its_circle() {
-    // At the radius of its largest speed, 3 m/s at 1 m.
-    let mut particles = small(Vec3::new(0.0, 3.0, 0.0));
-    particles.position_m.iter_mut().for_each(|x| x.x += 1.0);
-    // A rigid body that goes round turns with it; a swirl is not rigid.
-    let mut solver = solver(under(&["vortex = { centre_m = [0, 0, 0], speed_m_s = 3, radius_m = 1, drag_per_s = 1 }"]), &particles);
-    go(&mut solver, 1.0);
-    let (x, v) = (centre_m(&solver).as_dvec3(), mean_velocity(&solver));
-    let angle = x.y.atan2(x.x);
-    assert!((x.length() - 1.0).abs() < 0.03 && (v.length() / 3.0 - 1.0).abs() < 0.02, "at {x} with {v}");
-    assert!((angle - 3.0).abs() < 0.06, "{angle} rad after a second");
-}
-
-#[test]
 fn an_attractor_pulls_with_its_falloff() {
     for (falloff, share) in [(0.0, 1.0), (2.0, 0.25)] {
         let mut particles = small(Vec3::ZERO);

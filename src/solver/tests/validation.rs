@@ -51,4 +51,8 @@ quick_cases! {
     v22_laplace: "V22";
     v26_liquid_same_bits: "V26 liquid";
     v26_same_bits: "V26";
+    drag: "drag";
+    spring: "spring";
+    swirl: "swirl";
+    fields_same_bits: "fields";
 }

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod captured;
+mod driven;
 mod flakes;
 mod free;
 mod grains;
@@ -133,6 +134,10 @@ pub const CASES: &[Case] = &[
     Case { name: "V22", quick: true, run: liquid_rest::laplace },
     Case { name: "V26 liquid", quick: true, run: liquid_flow::same_bits },
     Case { name: "V26", quick: true, run: repeat::same_bits },
+    Case { name: "drag", quick: true, run: driven::drag },
+    Case { name: "spring", quick: true, run: driven::spring },
+    Case { name: "swirl", quick: true, run: driven::vortex },
+    Case { name: "fields", quick: true, run: driven::same_bits },
     Case { name: "left alone", quick: false, run: captured::left_alone },
     Case { name: "dropped", quick: false, run: captured::dropped },
 ];

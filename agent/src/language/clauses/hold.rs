@@ -112,6 +112,10 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
                 draft.spec.forces.retain(|f| f.object != name || !f.name.starts_with(stem));
                 "is pulled by nothing"
             }
+            Some(Verb::Field(field)) => {
+                draft.spec.forces.retain(|f| f.object != name || !f.name.starts_with(super::fields::stem(field)));
+                "is free of that"
+            }
             Some(Verb::Spin | Verb::Roll) => {
                 draft.object(object).spin_rad_s = [0.0; 3];
                 "does not spin"

@@ -2,6 +2,7 @@
 
 pub mod adjust;
 pub mod camera;
+pub mod fields;
 pub mod hold;
 pub mod motion;
 pub mod place;
@@ -77,6 +78,7 @@ fn verbs(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
             Verb::Pin => hold::pin(clause, draft)?,
             Verb::Release => hold::release(clause, draft)?,
             Verb::Rest | Verb::Stop => hold::cancel(clause, draft)?,
+            Verb::Field(field) => fields::understand(field, clause, draft)?,
             _ => motion::understand(verb, clause, draft)?,
         }
     }
@@ -148,7 +150,7 @@ pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
         Unbuilt::Muscle => format!("{words}: things that move themselves are not built yet; jumps, pushes, throws and spins are"),
         Unbuilt::Heat => format!("{words}: heat is not built yet; {elastic}"),
         Unbuilt::Fracture => format!("{words}: breaking is not built yet; {elastic}"),
-        Unbuilt::Deform => format!("{words}: only pushes, pulls, spins and pins move things yet; \"softer\" and \"push it\" make it wobble"),
+        Unbuilt::Deform => format!("{words}: only pushes, pulls, fields and pins move things; \"softer\" and \"push it\" make it wobble"),
         Unbuilt::Look => format!("{words}: colours and light are not built yet; motion, material, world and camera are"),
         Unbuilt::Scene => format!("{words}: changing the size or number of things is not built yet"),
         Unbuilt::Playback => format!("{words}: playback is not part of a simulation; \"at 200 fps\" gives more frames a second"),

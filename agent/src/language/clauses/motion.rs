@@ -35,6 +35,7 @@ pub fn understand(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<
         Verb::Push(strength) => push(strength, clause, draft, &objects, at_s),
         Verb::Throw => throw(clause, draft, &objects, at_s),
         Verb::Spin | Verb::Roll => spin(verb, clause, draft, &objects, at_s),
+        Verb::Blow if !clause.has(is_acceleration) => super::fields::wind(clause, draft, &objects, at_s),
         _ => pull(verb, clause, draft, &objects, at_s),
     }
 }
@@ -61,7 +62,7 @@ fn moment(clause: &mut Clause, draft: &Draft, object: usize) -> Result<Option<f6
 }
 
 /// How strong a verb is to be: adverbs and adjectives together, 1 where there are none.
-fn strength(verb: Verb, clause: &mut Clause) -> (f64, Option<Scale>) {
+pub fn strength(verb: Verb, clause: &mut Clause) -> (f64, Option<Scale>) {
     let scale = clause.take_scale(qualifies(verb));
     let adverbs = clause.take_vigour();
     let hard = match scale {
@@ -309,25 +310,21 @@ fn is_acceleration(sense: &Sense) -> bool {
 }
 
 /// "from behind" as the direction that something coming from there goes.
-fn take_side(clause: &mut Clause) -> Option<Direction> {
+pub fn take_side(clause: &mut Clause) -> Option<Direction> {
     clause.take(|s| match s {
         Sense::View(view) => from_side(*view),
         _ => None,
     })
 }
 
-/// A constant acceleration over a span of time: a pull, or wind.
-fn pull(verb: Verb, clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<f64>) -> Result<(), Refusal> {
-    let acceleration = clause.take_measure(Dimension::Acceleration).map(|(a, _)| a);
+/// From when and until when something lasts: "from 0.2 s to 1 s", "at 1 s for 2 s", "until 2 s".
+pub fn lasts(clause: &mut Clause, at_s: Option<f64>) -> Result<(f64, Until), Refusal> {
     let span = clause.take(|s| match s {
         Sense::Span(from, to) => Some((*from, *to)),
         _ => None,
     });
     let lasts = clause.take_for();
     let until = clause.take_until();
-    let mut directions = clause.take_directions();
-    directions.extend(take_side(clause));
-    let (strength, _) = strength(Verb::Pull, clause);
     let from_s = span.map(|s| s.0).or(at_s).unwrap_or(0.0);
     let to_s = match (span, until, lasts) {
         (Some((_, to)), ..) => Until::Time(to),
@@ -335,9 +332,23 @@ fn pull(verb: Verb, clause: &mut Clause, draft: &mut Draft, objects: &[usize], a
         (None, None, Some(lasts)) => Until::Time(say::tidy(from_s + lasts)),
         (None, None, None) => Until::End,
     };
-    if matches!(to_s, Until::Time(to) if to <= from_s) {
-        return Err("that ends before it begins".to_owned());
+    match to_s {
+        Until::Time(to) if to <= from_s => Err("that ends before it begins".to_owned()),
+        _ => Ok((from_s, to_s)),
     }
+}
+
+/// A constant acceleration over a span of time: a pull, or wind that is given as one.
+fn pull(verb: Verb, clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<f64>) -> Result<(), Refusal> {
+    let acceleration = clause.take_measure(Dimension::Acceleration).map(|(a, _)| a);
+    let (from_s, to_s) = lasts(clause, at_s)?;
+    let mut directions = clause.take_directions();
+    directions.extend(take_side(clause));
+    // "Pull it towards the table"
+    if directions.is_empty() && clause.take_sense(&Sense::Ground) {
+        directions.push(Direction::Down);
+    }
+    let (strength, _) = strength(Verb::Pull, clause);
     let stem = if verb == Verb::Blow { "wind" } else { "pull" };
     for &object in objects {
         let assumed = if directions.is_empty() { " (no direction said)" } else { "" };

@@ -1,0 +1,207 @@
+//! Fields: wind, swirls, blasts, drag of air and water, swinging and shaking, motors.
+
+use super::super::clause::Clause;
+use super::super::draft::{Draft, Refusal};
+use super::super::numbers::Dimension;
+use super::super::say;
+use super::super::sense::{Direction, Field, Sense, Verb};
+use super::motion::{axis_name, lasts, strength, take_side};
+use glam::DVec3;
+use phystalk::spec::expression::{Kind, parse};
+use phystalk::spec::{Acceleration, Attractor, Auto, Drag, Explosion, Force, Motor, Until, Vortex, Wind};
+use std::f64::consts::TAU;
+
+/// Speed of a wind that nobody gave, for an object of one metre: it slides at the default friction, and bends.
+const WIND_M_S: f64 = 6.0;
+/// Speed of a swirl that nobody gave, for an object of one metre.
+const SWIRL_M_S: f64 = 3.0;
+/// Speed of a blast that nobody gave, for an object of one metre.
+const BLAST_M_S: f64 = 5.0;
+/// Pull towards the middle that nobody gave.
+const ATTRACT_M_S2: f64 = 10.0;
+/// Of a thing in air, much as of a beach ball: it falls at 4 m/s in the end.
+const AIR_PER_M: f64 = 0.6;
+/// Of a thing in water.
+const WATER_PER_S: f64 = 4.0;
+/// Acceleration and angular speed of a swing that nobody gave: once a second, a third of a metre wide.
+const SWAY: (f64, f64) = (6.0, TAU);
+/// Of shaking: five times a second.
+const SHAKE: (f64, f64) = (30.0, 5.0 * TAU);
+/// How far gusts go from the mean of a gusty wind, as a share of it.
+const GUSTY: f64 = 0.5;
+
+/// Reads one verb of a field with all that belongs to it.
+pub fn understand(field: Field, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    // "swing it to and fro" says it twice.
+    while clause.take_verb(|v| v == Verb::Field(field)).is_some() {}
+    let objects = draft.subjects(clause)?;
+    let at_s = clause.take_at();
+    // A blast is over at once: "for 2 s" is how long the run lasts.
+    let span = if field == Field::Explode { (at_s.unwrap_or(0.0), Until::End) } else { lasts(clause, at_s)? };
+    let ask = Ask {
+        speed: clause.take_measure(Dimension::Speed).map(|(v, _)| v),
+        rate: clause.take_measure(Dimension::AngularSpeed).map(|(w, _)| w),
+        acceleration: clause.take_measure(Dimension::Acceleration).map(|(a, _)| a),
+        directions: clause.take_directions(),
+        strength: strength(Verb::Field(field), clause).0,
+    };
+    for &object in &objects {
+        one(field, &ask, span, draft, object)?;
+    }
+    Ok(())
+}
+
+/// What a clause says of a field.
+struct Ask {
+    speed: Option<f64>,
+    rate: Option<f64>,
+    acceleration: Option<f64>,
+    directions: Vec<Direction>,
+    strength: f64,
+}
+
+impl Ask {
+    /// -1 where it goes clockwise.
+    fn turn(&self) -> f64 {
+        if self.directions.iter().any(|d| matches!(d, Direction::Clockwise | Direction::Right)) { -1.0 } else { 1.0 }
+    }
+}
+
+fn one(field: Field, ask: &Ask, span: (f64, Until), draft: &mut Draft, object: usize) -> Result<(), Refusal> {
+    let (name, size_m) = (draft.name(object), draft.size_m(object));
+    let radius_m = say::tidy(0.5 * size_m);
+    // Amounts that are not given follow the object's size by Froude's rule.
+    let speed = |usual: f64| say::tidy(ask.speed.unwrap_or(usual * ask.strength * size_m.sqrt()));
+    let when = said_span(span);
+    match field {
+        Field::Swirl => {
+            let speed_m_s = ask.turn() * speed(SWIRL_M_S);
+            let vortex = Vortex { centre_m: Auto::Auto, axis: [0.0, 0.0, 1.0], speed_m_s, radius_m, lift_m_s: 0.0, drag_per_s: 2.0 };
+            put(draft, &name, "swirl", span, |force| force.vortex = Some(vortex));
+            let axis = axis_name(DVec3::Z * speed_m_s.signum());
+            draft.gloss.push(format!("air swirls round {name} at {}, about {axis}{when}", say::speed(speed_m_s.abs())));
+        }
+        Field::Explode => {
+            let speed_m_s = speed(BLAST_M_S);
+            let explosion = Explosion { centre_m: Auto::Auto, speed_m_s, radius_m };
+            put(draft, &name, "blast", span, |force| force.explosion = Some(explosion));
+            draft.gloss.push(format!("{name} is blown out from its middle at {}: {}", say::seconds(span.0), say::speed(speed_m_s)));
+        }
+        Field::Attract => {
+            let strength_m_s2 = say::tidy(ask.acceleration.unwrap_or(ATTRACT_M_S2 * ask.strength));
+            let attractor = Attractor { centre_m: Auto::Auto, strength_m_s2, radius_m, falloff: 0.0 };
+            put(draft, &name, "attract", span, |force| force.attractor = Some(attractor));
+            draft.gloss.push(format!("{name} is drawn to its middle with {}{when}", say::acceleration(strength_m_s2)));
+        }
+        Field::Air | Field::Water => {
+            let air = field == Field::Air;
+            let (linear_per_s, quadratic_per_m) =
+                if air { (0.0, say::tidy(AIR_PER_M * ask.strength)) } else { (say::tidy(WATER_PER_S * ask.strength), 0.0) };
+            put(draft, &name, "drag", span, |force| force.drag = Some(Drag { linear_per_s, quadratic_per_m }));
+            let ends = if air { format!(": falls end at {}", say::speed((9.81 / quadratic_per_m).sqrt())) } else { String::new() };
+            draft.gloss.push(format!("{} slows {name}{ends}{when}", if air { "air" } else { "water" }));
+        }
+        Field::Sway | Field::Shake => {
+            let (usual, angular) = if field == Field::Sway { SWAY } else { SHAKE };
+            let amount = say::tidy(ask.acceleration.unwrap_or(usual * ask.strength));
+            let angular = say::tidy(ask.rate.unwrap_or(angular));
+            // "Left and right" is along one line.
+            let line = ask.directions.first().copied().unwrap_or(Direction::Sideways);
+            let heading = draft.frame(object).heading(&[line]).ok_or("a direction is needed")?;
+            let acceleration_m_s2 = to_and_fro(heading.unit, amount, angular, span.0);
+            let stem = if field == Field::Sway { "swing" } else { "shake" };
+            put(draft, &name, stem, span, |force| force.acceleration_m_s2 = Some(Acceleration::Expression(acceleration_m_s2)));
+            let times = match say::short(angular / TAU).as_str() {
+                "1" => "once".to_owned(),
+                times => format!("{times} times"),
+            };
+            draft.gloss.push(format!("{name} is driven to and fro, {times} a second, with {}{when}", say::acceleration(amount)));
+        }
+        Field::Motor => {
+            let speed_rad_s = say::tidy(ask.turn() * ask.rate.unwrap_or(TAU * ask.strength));
+            let motor = Motor { centre_m: Auto::Auto, axis: [0.0, 0.0, 1.0], speed_rad_s, rate_per_s: 5.0 };
+            put(draft, &name, "motor", span, |force| force.motor = Some(motor));
+            draft.gloss.push(format!("{name} is kept turning, {}{when}", say::turns(speed_rad_s)));
+        }
+    }
+    Ok(())
+}
+
+/// An acceleration along a line, as an expression. What starts from rest comes back: a sine in place of the cosine
+/// would carry it off.
+fn to_and_fro(unit: DVec3, amount: f64, angular: f64, from_s: f64) -> String {
+    let [x, y, z] = say::tidy3(unit * amount);
+    let time = if from_s == 0.0 { "t".to_owned() } else { format!("(t - {from_s})") };
+    let text = format!("vec3({x}, {y}, {z}) * cos({angular} * {time})");
+    // In the form in which specs hold it.
+    parse(&text, Kind::Vector).map(|tree| tree.to_string()).unwrap_or(text)
+}
+
+/// Wind, as moving air.
+pub fn wind(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<f64>) -> Result<(), Refusal> {
+    let speed = clause.take_measure(Dimension::Speed).map(|(v, _)| v);
+    let span = lasts(clause, at_s)?;
+    let gust = if clause.take_sense(&Sense::Gusty) { GUSTY } else { 0.0 };
+    let mut directions = clause.take_directions();
+    directions.extend(take_side(clause));
+    let (strength, scale) = strength(Verb::Blow, clause);
+    for &object in objects {
+        let name = draft.name(object);
+        // "A stronger wind" is one that is there, made stronger.
+        let blows = draft.spec.forces.iter_mut().rev().find(|f| f.object == name && f.wind.is_some());
+        if let Some(force) = blows.filter(|_| scale.is_some_and(|s| s.compared) && directions.is_empty() && speed.is_none()) {
+            let before = force.strength().map_or(0.0, |(s, _)| s);
+            if let Some(wind) = &mut force.wind {
+                wind.velocity_m_s = say::tidy3(DVec3::from(wind.velocity_m_s) * strength);
+                wind.gust = wind.gust.max(gust);
+            }
+            draft.gloss.push(format!("the wind on {name} has {} instead of {}", say::speed(before * strength), say::speed(before)));
+            continue;
+        }
+        let assumed = if directions.is_empty() { " (no direction said)" } else { "" };
+        let wanted = if directions.is_empty() { &[Direction::Forward][..] } else { &directions };
+        let heading = draft.frame(object).heading(wanted).ok_or("those directions cancel out")?;
+        let speed = speed.unwrap_or(WIND_M_S * strength * draft.size_m(object).sqrt());
+        let velocity_m_s = say::tidy3(heading.unit * speed);
+        let wind = Wind { velocity_m_s, drag_per_s: 1.0, gust, turbulence: 0.5 * gust, eddy_m: 0.3 };
+        put(draft, &name, "wind", span, |force| force.wind = Some(wind));
+        let gusts = if gust > 0.0 { " in gusts" } else { "" };
+        draft.gloss.push(format!("wind blows on {name} {}{assumed} at {}{gusts}{}", heading.said, say::speed(speed), said_span(span)));
+    }
+    Ok(())
+}
+
+/// Adds a force, or replaces the object's own of that kind that begins at the same time.
+fn put(draft: &mut Draft, object: &str, stem: &str, (from_s, to_s): (f64, Until), fill: impl FnOnce(&mut Force)) {
+    let same = |f: &&mut Force| f.object == object && f.from_s == from_s && f.name.starts_with(stem);
+    let known = draft.spec.forces.iter_mut().find(same).map(|f| f.name.clone());
+    let name = known.clone().unwrap_or_else(|| draft.free_name(stem, |spec, name| spec.forces.iter().any(|f| f.name == name)));
+    let mut force = Force::new(&name, object, from_s, to_s);
+    fill(&mut force);
+    match draft.spec.forces.iter_mut().find(|f| Some(&f.name) == known.as_ref()) {
+        Some(old) => *old = force,
+        None => draft.spec.forces.push(force),
+    }
+}
+
+/// " from 0.5 s to 1 s"; nothing where it is all the time.
+fn said_span((from_s, to_s): (f64, Until)) -> String {
+    match to_s {
+        Until::End if from_s == 0.0 => String::new(),
+        Until::End => format!(" from {} on", say::seconds(from_s)),
+        Until::Time(to) => format!(" from {} to {}", say::seconds(from_s), say::seconds(to)),
+    }
+}
+
+/// What the forces of a field are called.
+pub fn stem(field: Field) -> &'static str {
+    match field {
+        Field::Swirl => "swirl",
+        Field::Explode => "blast",
+        Field::Attract => "attract",
+        Field::Air | Field::Water => "drag",
+        Field::Sway => "swing",
+        Field::Shake => "shake",
+        Field::Motor => "motor",
+    }
+}
