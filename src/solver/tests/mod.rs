@@ -8,6 +8,7 @@ mod library;
 mod liquid;
 mod motion;
 mod prestress;
+mod shown;
 mod twins;
 mod validation;
 

@@ -1,0 +1,102 @@
+//! What is seen of matter whose F forgets, and how fast its waves run.
+
+use super::laws::all_laws;
+use super::{block, solver};
+use crate::Stop;
+use crate::gpu::{Gpu, Recording};
+use crate::solver::substance::Substance;
+use crate::solver::{Placement, Plane, Settings, Solver, SolverError};
+use glam::{Mat3, Quat, Vec3};
+
+/// G and the volume ratio of each particle, as a frame has them.
+fn frame(solver: &Solver) -> Vec<(Mat3, f32)> {
+    let gpu = Gpu::shared_for_tests().expect("a device");
+    let mut recording = Recording::default();
+    solver.record_frame(&mut recording);
+    gpu.submit(&recording);
+    let n = solver.particle_count() as usize;
+    let motion: Vec<[u32; 8]> = gpu.read(solver.motion(), n).expect("motion");
+    let velocity: Vec<[f32; 4]> = gpu.read(solver.velocity(), n).expect("velocity");
+    let half = |m: &[u32; 8], k: usize| half::f16::from_bits((m[3 + k / 2] >> (16 * (k % 2))) as u16).to_f32();
+    let g = |m: &[u32; 8]| Mat3::from_cols_array(&std::array::from_fn(|k| half(m, k))).transpose() + Mat3::IDENTITY;
+    motion.iter().zip(&velocity).map(|(m, v)| (g(m), v[3])).collect()
+}
+
+fn of(substance: Substance) -> Solver {
+    let mut particles = block(Vec3::ZERO, Vec3::splat(0.1), 0.025, 1e5, 0.3);
+    particles.substances = vec![substance];
+    solver(Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(0.05) }, &particles)
+}
+
+#[test]
+fn what_is_shown_turns_with_the_body_and_volume_counts_what_the_law_remembers() {
+    let dent = Mat3::from_cols_array(&[1.1, 0.1, 0.0, 0.0, 0.9, 0.05, -0.1, 0.0, 1.02]);
+    for substance in all_laws() {
+        let mut solver = of(substance.clone());
+        solver.edit(|s| s.history += 0.1).expect("an edit");
+        solver.edit_shown(|_, _| dent).expect("an edit");
+        let turn = Quat::from_rotation_y(0.7);
+        let placement = Placement { rotation: turn, centre_m: Vec3::ZERO, offset_m: Vec3::X, velocity_m_s: Vec3::ZERO, spin_rad_s: Vec3::ZERO };
+        solver.place(0, &placement).expect("a placement");
+        let seen = if substance.shown_stretch().is_some() { dent } else { Mat3::IDENTITY };
+        let volume = match &substance {
+            Substance::Sand { .. } => 0.1f32.exp(),
+            Substance::Snow { .. } => 1.1,
+            _ => 1.0,
+        };
+        for (g, ratio) in frame(&solver) {
+            assert!(g.abs_diff_eq(Mat3::from_quat(turn) * seen, 2e-3), "{substance:?}: {g}");
+            assert!((ratio - volume).abs() < 1e-5, "{substance:?}: {ratio}");
+        }
+    }
+}
+
+#[test]
+fn waves_run_faster_where_a_law_stiffens() {
+    for substance in all_laws() {
+        let mut solver = of(substance.clone());
+        solver.edit(|s| s.history = 0.8).expect("an edit");
+        let passive = 1e5 * 0.7 / (1.3 * 0.4);
+        let modulus = match &substance {
+            Substance::Snow { hardening, .. } => passive * (hardening * 0.2).exp(),
+            Substance::Muscle { .. } => passive + 1e5,
+            _ => passive,
+        };
+        let seen = solver.look().expect("a look").wave_speed_m_s;
+        assert!((seen / (modulus / 1000.0).sqrt() - 1.0).abs() < 1e-4, "{substance:?}: {seen} m/s");
+    }
+}
+
+#[test]
+fn matter_of_any_law_thrown_hard_at_the_ground_stays_finite() {
+    let extremes = [
+        Substance::Plastic { yield_stress_pa: 0.0, hardening_pa: 0.0 },
+        Substance::Plastic { yield_stress_pa: 1e3, hardening_pa: -1e9 },
+        Substance::Plastic { yield_stress_pa: 1e3, hardening_pa: 1e9 },
+        Substance::Viscoplastic { yield_stress_pa: 0.0, viscosity_pa_s: 0.0 },
+        Substance::Viscoplastic { yield_stress_pa: 0.0, viscosity_pa_s: 1e6 },
+        Substance::Sand { friction_angle_deg: 1.0, cohesion_pa: 0.0 },
+        Substance::Sand { friction_angle_deg: 85.0, cohesion_pa: 1e5 },
+    ];
+    for substance in all_laws().into_iter().chain(extremes) {
+        let mut particles = block(Vec3::new(0.0, 0.0, 0.05), Vec3::splat(0.1), 0.025, 2e4, 0.3);
+        particles.substances = vec![substance.clone()];
+        let mut settings = Settings::new(0.05);
+        settings.ground = Some(Plane { height_m: 0.0, friction: 0.3, restitution: 0.0 });
+        let mut solver = solver(settings, &particles);
+        solver.set_velocity(0, Vec3::new(3.0, 0.0, -12.0));
+        match solver.advance(0.06, &Stop::default()) {
+            Ok(report) => assert!(report.substeps > 0),
+            Err(error) => assert!(matches!(error, SolverError::Unstable { .. }), "{substance:?}: {error}"),
+        }
+        for s in solver.states().expect("states") {
+            assert!(s.position_m.is_finite() && s.velocity_m_s.is_finite() && s.f().is_finite() && s.history.is_finite(), "{substance:?}");
+            assert!(s.position_m.z >= -1e-6, "{substance:?}: {}", s.position_m);
+        }
+        let bounds = substance.shown_stretch();
+        for (g, _) in frame(&solver) {
+            let (s, _) = crate::solver::twin::laws::stretches(g.as_dmat3());
+            assert!(bounds.is_none_or(|[least, most]| s.z > f64::from(least) - 0.01 && s.x < f64::from(most) + 0.01), "{substance:?}: {s}");
+        }
+    }
+}
