@@ -37,6 +37,8 @@ long_cases! {
     sand_comes_to_rest_at_its_angle: "V13 slope at rest";
     slabs_of_grains_run_out_as_experiments_say: "V14";
     a_cylinder_of_sand_runs_out_as_experiments_say: "V15";
+    v19_sloshing: "V19 sloshing";
+    v21_swinging_drop: "V21";
     what_was_captured_standing_stays_as_it_stands: "left alone";
     what_is_dropped_bends_and_comes_back: "dropped";
 }
