@@ -38,6 +38,8 @@ struct Params {
     tension_units: f32,
     // And of its kinematic viscosity, m^2/s.
     viscosity_units: f32,
+    // 1 where some particles are liquids beside the grid.
+    has_liquid: u32,
 }
 
 // Offset in nodes of one axis' coordinate within the block-linear storage; the three axes add up.

@@ -27,6 +27,8 @@ struct Control {
     final_speed: atomic<u32>,
     // Bits of the fastest wave's speed at the end of the segment.
     wave_speed: atomic<u32>,
+    // 1 where a list of neighbours was too short.
+    crowded: atomic<u32>,
 }
 
 // Power of two that brings momenta up to `largest` to `momentum_bits`.

@@ -14,7 +14,13 @@
 // Contact marks of each node: of the ground, of the other colliders.
 @group(0) @binding(5) var<storage, read_write> marks: array<atomic<u32>>;
 @group(0) @binding(6) var<storage, read_write> control: Control;
+@group(0) @binding(7) var<storage, read> substances: array<Substance>;
 var<immediate> substep: Substep;
+
+// Liquids of smoothed particles have no part in the grid.
+fn on_grid(i: u32) -> bool {
+    return params.has_liquid == 0u || substances[row_of(bitcast<u32>(matter[3u * params.count + i].y))].kind != SPH_LIQUID;
+}
 
 // Lane in which the run of equal keys that this lane belongs to begins.
 fn run_start(starts: vec4<u32>, lane: u32) -> u32 {
@@ -120,7 +126,7 @@ fn main(
     if (!inside) {
         atomicStore(&control.window, 1u);
     }
-    let counts = alive && inside;
+    let counts = alive && inside && on_grid(i);
     let s = stencil(x, base, vec3<u32>(max(first, vec3<i32>(0))));
     let key = select(0xffffffffu, s.ox.x + s.oy.x + s.oz.x, counts);
     let starts = subgroupBallot(lane == 0u || subgroupShuffleUp(key, 1u) != key);

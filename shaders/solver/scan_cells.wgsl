@@ -1,10 +1,11 @@
-// Sort, fourth pass: where each cell's particles begin. One workgroup for each active block.
+// Sort, fourth pass: where each cell's particles begin and end. One workgroup for each active block.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
 @group(0) @binding(2) var<storage, read> block_start: array<u32>;
 @group(0) @binding(3) var<storage, read> cell_count: array<u32>;
 @group(0) @binding(4) var<storage, read_write> cell_start: array<u32>;
+@group(0) @binding(5) var<storage, read_write> cell_end: array<u32>;
 
 @compute @workgroup_size(SCAN_LANES)
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
@@ -12,5 +13,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     let block = active_blocks[1u + min(place, active_blocks[0] - 1u)];
     let cell = block * 64u + lane;
     let scanned = scan(lane, vec2<u32>(cell_count[cell], 0u));
-    cell_start[cell] = block_start[block] + scanned.x;
+    let start = block_start[block] + scanned.x;
+    cell_start[cell] = start;
+    cell_end[cell] = start + cell_count[cell];
 }

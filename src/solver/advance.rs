@@ -6,6 +6,7 @@ use super::fields::{Fields, When};
 use super::grid::GridBuffers;
 use super::liquid::LiquidBound;
 use super::obstacles;
+use super::sph::SphBound;
 use super::types::{Advance, Softened, SolverError};
 use super::watch::{Control, Watch};
 use crate::Stop;
@@ -35,6 +36,8 @@ pub(super) struct Plan {
     pub substeps: u32,
     /// A sort before each so many.
     pub sort_every: u32,
+    /// Rounds of implicit viscosity of the liquids beside the grid.
+    pub viscous_rounds: u32,
 }
 
 impl Plan {
@@ -140,6 +143,10 @@ impl Solver {
             if now.window {
                 room *= 2;
             }
+            // Longer lists are no matter of the time step.
+            if now.crowded && self.lengthen_lists()? {
+                continue;
+            }
             if now.overflow {
                 self.params.momentum_bits -= FIXED_BITS_RETREAT;
                 self.params.mass_units *= 0.5f32.powi(FIXED_BITS_RETREAT as i32);
@@ -205,6 +212,10 @@ impl Solver {
         let left_s = frame_end_s - self.time_s;
         let speed_m_s = f64::from(seen.speed_m_s + seen.driven_m_s) + f64::from(acceleration_m_s2) * left_s;
         let limit_s = f64::from(self.settings.cfl) * cell_m / (f64::from(seen.wave_speed_m_s) + speed_m_s) / f64::from(1u32 << halvings);
+        let limit_s = self.sph().map_or(limit_s, |sph| {
+            let halved = f64::from(1u32 << halvings);
+            limit_s.min(sph.limit_s(0.5 * cell_m, f64::from(self.settings.cfl), speed_m_s, f64::from(acceleration_m_s2)) / halved)
+        });
         let dt_s = left_s / (left_s / limit_s).ceil().max(1.0);
         let parts = (until_s - self.time_s) / dt_s;
         let whole = (parts + 1e-6).floor();
@@ -217,7 +228,9 @@ impl Solver {
             dt_s: dt_s as f32,
             last_dt_s: if cut { rest_s as f32 } else { dt_s as f32 },
             substeps: whole as u32 + u32::from(cut),
-            sort_every: (sorts as u32).clamp(1, (SORT_EVERY >> halvings).max(1)),
+            // Lists of neighbours are made from the cells of the sort.
+            sort_every: if self.sph().is_some() { 1 } else { (sorts as u32).clamp(1, (SORT_EVERY >> halvings).max(1)) },
+            viscous_rounds: self.sph().map_or(0, |sph| sph.viscous_rounds(cell_m, dt_s)),
         }
     }
 
@@ -315,12 +328,17 @@ impl Solver {
             let first = Substep { dt_next_s: substep.dt_s, ..substep };
             recording.dispatch_with(&passes.stress, &b.stress, &first, groups);
         }
-        recording.dispatch_with(&passes.p2g, &b.p2g, &substep, groups);
-        recording.indirect_with(&passes.grid, &b.grid, &substep, &b.active_groups, 0);
-        if let Some(liquid) = &b.liquid {
-            self.record_walls(liquid, &b.active_groups, recording);
+        if let (Some(sph), Some(bound)) = (self.sph(), &b.sph) {
+            sph.record(bound, &substep, plan.viscous_rounds, groups, recording);
         }
-        recording.dispatch_with(&passes.g2p, &b.g2p, &substep, groups);
+        if self.has_solids() {
+            recording.dispatch_with(&passes.p2g, &b.p2g, &substep, groups);
+            recording.indirect_with(&passes.grid, &b.grid, &substep, &b.active_groups, 0);
+            if let Some(liquid) = &b.liquid {
+                self.record_walls(liquid, &b.active_groups, recording);
+            }
+            recording.dispatch_with(&passes.g2p, &b.g2p, &substep, groups);
+        }
         self.record_fields(b, &substep, recording);
         self.substep += 1;
     }
@@ -364,14 +382,16 @@ impl Solver {
             scan_sums: gpu.bind(&p.scan_sums, &[params, &grid.block_info, &grid.chunk_sums]),
             scan_blocks: gpu
                 .bind(&p.scan_blocks, &[params, &grid.block_info, &grid.chunk_sums, &grid.block_start, &grid.active_blocks, &grid.active_groups]),
-            scan_cells: gpu.bind(&p.scan_cells, &[params, &grid.active_blocks, &grid.block_start, &grid.cell_count, &grid.cell_start]),
+            scan_cells: gpu
+                .bind(&p.scan_cells, &[params, &grid.active_blocks, &grid.block_start, &grid.cell_count, &grid.cell_start, &grid.cell_end]),
             scatter: gpu.bind(&p.scatter, &[params, kinematics, matter, &grid.cell_count, &grid.cell_start, &self.slots]),
             order: gpu.bind(&p.order, &[params, &self.slots, kinematics, matter, &other.kinematics, &other.matter]),
             stress: gpu.bind(&p.stress, &stress[..if laws.all { 6 } else { 5 }]),
-            p2g: gpu.bind(&p.p2g, &[params, kinematics, matter, &self.colliders_buffer, &grid.sums, &grid.marks, &self.control]),
+            p2g: gpu.bind(&p.p2g, &[params, kinematics, matter, &self.colliders_buffer, &grid.sums, &grid.marks, &self.control, &laws.table]),
             grid: gpu.bind(&p.grid, &on_grid),
             liquid: self.bind_liquid(grid, state),
             g2p: gpu.bind(&p.g2p, &g2p[..if laws.all { 10 } else { 8 }]),
+            sph: self.sph().map(|sph| sph.bind(self, grid, current)),
         }
     }
 
@@ -435,4 +455,5 @@ pub(super) struct Bound {
     pub grid: wgpu::BindGroup,
     pub g2p: wgpu::BindGroup,
     pub liquid: Option<LiquidBound>,
+    pub sph: Option<SphBound>,
 }

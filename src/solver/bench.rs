@@ -1,11 +1,13 @@
-//! How long a substep takes: the drop of an elastic cube.
+//! How long a substep takes: the drop of an elastic cube, and of one of liquid.
 
 use super::advance::Plan;
 use super::core::Solver;
 use super::substance::Substance;
 use super::types::{Particles, Plane, Settings, SolverError};
+use crate::Stop;
 use crate::gpu::{Gpu, PassTime, Recording, Tier};
 use glam::Vec3;
+use std::time::Instant;
 
 /// One benchmark's figure.
 #[derive(Clone, Debug)]
@@ -33,10 +35,49 @@ pub fn bench_substep(gpu: &Gpu, particles: usize) -> Result<BenchReport, SolverE
     let mut settings = Settings::new(1.0 / (0.5 / spacing_m).round().max(32.0));
     settings.ground = Some(Plane { height_m: 0.0, friction: 0.3, restitution: 0.0 });
     let mut solver = Solver::new(gpu, settings, &body)?;
-    let (substeps, recordings) = match gpu.tier {
+    let repeats = match gpu.tier {
         Tier::Cpu => (16, 5),
         Tier::Gpu => (64, 15),
     };
+    time_substeps(&mut solver, repeats, format!("mpm substep, {} particles", body.len()))
+}
+
+/// Times substeps of the same drop of water, as smoothed particles, while it spreads on the ground.
+pub fn bench_sph(gpu: &Gpu, particles: usize) -> Result<BenchReport, SolverError> {
+    let mut solver = drop_of_water(gpu, particles)?;
+    solver.advance(0.3, &Stop::default())?;
+    let repeats = match gpu.tier {
+        Tier::Cpu => (2, 3),
+        Tier::Gpu => (16, 9),
+    };
+    let count = solver.particle_count();
+    time_substeps(&mut solver, repeats, format!("sph substep, {count} particles"))
+}
+
+/// How long one simulated second of that drop takes, seconds; what is read back at each frame counts too.
+pub fn bench_sph_second(gpu: &Gpu, particles: usize) -> Result<f64, SolverError> {
+    // Another one compiles, and brings the clock up.
+    drop_of_water(gpu, particles)?.advance(0.02, &Stop::default())?;
+    let mut solver = drop_of_water(gpu, particles)?;
+    gpu.wait()?;
+    let start = Instant::now();
+    solver.advance(1.0, &Stop::default())?;
+    gpu.wait()?;
+    Ok(start.elapsed().as_secs_f64())
+}
+
+fn drop_of_water(gpu: &Gpu, particles: usize) -> Result<Solver, SolverError> {
+    let substances = vec![Substance::SphLiquid { viscosity_pa_s: 1e-3, surface_tension_n_m: 0.0728 }];
+    let body = Particles { substances, ..cube(particles) };
+    let spacing_m = EDGE_M / (body.len() as f32).cbrt();
+    let mut settings = Settings::new(2.0 * spacing_m);
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.3, restitution: 0.0 });
+    Solver::new(gpu, settings, &body)
+}
+
+/// Times whole recordings of some substeps, some times over.
+fn time_substeps(solver: &mut Solver, (substeps, recordings): (u32, u32), label: String) -> Result<BenchReport, SolverError> {
+    let gpu = &solver.gpu.clone();
     let plan = solver.bench_plan(substeps * (recordings + 2) + substeps)?;
     let mut step = 0;
     let mut record = |solver: &mut Solver, count: u32| -> Result<Recording, SolverError> {
@@ -46,20 +87,20 @@ pub fn bench_substep(gpu: &Gpu, particles: usize) -> Result<BenchReport, SolverE
     };
     // The first ones compile, and bring the clock up.
     for _ in 0..2 {
-        let warm = record(&mut solver, substeps)?;
+        let warm = record(solver, substeps)?;
         gpu.submit(&warm);
     }
     let mut seconds = Vec::new();
     for _ in 0..recordings {
-        let recording = record(&mut solver, substeps)?;
+        let recording = record(solver, substeps)?;
         seconds.push(gpu.time(&recording)? / f64::from(substeps));
     }
     seconds.sort_by(f64::total_cmp);
-    let last = record(&mut solver, plan.sort_every)?;
+    let last = record(solver, plan.sort_every)?;
     let passes = gpu.profile(&last)?;
     Ok(BenchReport {
-        label: format!("mpm substep, {} particles", body.len()),
-        particles: body.len(),
+        label,
+        particles: solver.particle_count() as usize,
         substep_seconds: [seconds[seconds.len() / 2], seconds[0], seconds[seconds.len() - 1]],
         passes,
     })
@@ -89,8 +130,8 @@ impl Solver {
     fn bench_plan(&mut self, substeps: u32) -> Result<Plan, SolverError> {
         let seen = self.look()?;
         let acceleration = self.set_surroundings();
-        let frame_s = self.settings.frame_s;
-        let plan = Plan { substeps, ..self.plan(&seen, frame_s, frame_s, acceleration, 0) };
+        let end_s = self.time_s + self.settings.frame_s;
+        let plan = Plan { substeps, ..self.plan(&seen, end_s, end_s, acceleration, 0) };
         self.fit_window(seen.low, seen.high, 4 + (DROP_M / self.settings.cell_m) as i32)?;
         self.start_segment();
         Ok(plan)
@@ -109,6 +150,18 @@ impl Solver {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_liquid_benchmark_runs_the_drop_and_names_its_passes() {
+        let gpu = Gpu::shared_for_tests().expect("a device");
+        let report = bench_sph(&gpu, 216).expect("a report");
+        assert_eq!(report.particles, 216);
+        assert!(report.substep_seconds.iter().all(|s| *s > 0.0));
+        for label in ["solver.order", "solver.sph_near", "solver.sph_press", "solver.sph_correct", "solver.sph_advance"] {
+            assert!(report.passes.iter().any(|p| p.label == label), "{label}");
+        }
+        assert!(report.passes.iter().all(|p| p.label != "solver.p2g"), "nothing is on the grid");
+    }
 
     #[test]
     fn the_benchmark_runs_the_drop_and_names_its_passes() {

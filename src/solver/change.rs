@@ -71,6 +71,10 @@ impl Solver {
                 let after = &self.laws.substances[usize::from(row)];
                 turn(state, before, after, &mut unstressed[i], shown.get_mut(i));
                 state.tag = object | u32::from(row) << 16;
+                if after.is_sph() {
+                    // It has pressure in place of moduli, and no part in the grid.
+                    (state.mu_pa, state.lambda_pa, state.affine) = (0.0, 0.0, [0.0; 9]);
+                }
             }
         }
         self.gpu.upload(&self.unstressed, &unstressed);

@@ -8,6 +8,7 @@ use super::laws::{Laws, rows};
 use super::liquid::LiquidPasses;
 use super::obstacles::{self, PinRecord};
 use super::passes::Passes;
+use super::sph::Sph;
 use super::state::{self, ParticleState, StateBuffers};
 use super::types::{Particles, Placement, Settings, SolverError};
 use super::watch::{Control, Watch};
@@ -38,6 +39,8 @@ pub(super) struct Params {
     pub first_substep: u32,
     pub tension_units: f32,
     pub viscosity_units: f32,
+    pub has_liquid: u32,
+    pub padding: [u32; 3],
 }
 
 #[repr(C)]
@@ -74,6 +77,8 @@ pub struct Solver {
     pub(super) fields: Option<Fields>,
     /// Of facilities beside the laws; [`Solver::kept`] has all.
     pub(super) kept: Vec<Kept>,
+    /// Liquids beside the grid, where there are any.
+    pub(super) sph: Option<Sph>,
     pub(super) slots: wgpu::Buffer,
     /// Rows of F0^-1 in the original order.
     pub(super) unstressed: wgpu::Buffer,
@@ -127,6 +132,7 @@ impl Solver {
             backup: StateBuffers::new(gpu, "solver.backup", n)?,
             fields: Fields::new(gpu, &settings, particles, params.seed)?,
             kept: Vec::new(),
+            sph: None,
             slots: gpu.storage::<[u32; 4]>("solver.slots", n)?,
             unstressed: gpu.storage_from("solver.unstressed", &vec![rows(Mat3::IDENTITY); n])?,
             motion: gpu.storage::<[u32; 8]>("solver.motion", n)?,
@@ -142,6 +148,7 @@ impl Solver {
         };
         solver.set_substances(&particles.substances)?;
         solver.scale_liquids(&states);
+        solver.survey(&states);
         solver.buffers[0].upload(gpu, &states);
         Ok(solver)
     }
@@ -242,6 +249,7 @@ impl Solver {
     pub(super) fn replace(&mut self, states: &[ParticleState]) {
         self.scale_liquids(states);
         self.buffers[self.current].upload(&self.gpu, states);
+        self.survey(states);
         self.seen = None;
     }
 

@@ -49,6 +49,7 @@ pub(super) struct GridBuffers {
     pub velocity: wgpu::Buffer,
     pub cell_count: wgpu::Buffer,
     pub cell_start: wgpu::Buffer,
+    pub cell_end: wgpu::Buffer,
     pub block_info: wgpu::Buffer,
     pub block_start: wgpu::Buffer,
     pub chunk_sums: wgpu::Buffer,
@@ -59,7 +60,7 @@ pub(super) struct GridBuffers {
 }
 
 /// Bytes of all buffers for one node.
-const NODE_BYTES: u64 = 48;
+const NODE_BYTES: u64 = 52;
 /// A software adapter shares the machine's memory and is slow over much of it.
 const CPU_GRID_BYTES: u64 = 768 << 20;
 /// Room for other programs and for the picture is left on a GPU.
@@ -88,6 +89,7 @@ impl GridBuffers {
             velocity: gpu.storage::<[f32; 4]>("solver.velocity", nodes)?,
             cell_count: gpu.storage::<u32>("solver.cell_count", nodes)?,
             cell_start: gpu.storage::<u32>("solver.cell_start", nodes)?,
+            cell_end: gpu.storage::<u32>("solver.cell_end", nodes)?,
             block_info: gpu.storage::<[u32; 2]>("solver.block_info", blocks as usize)?,
             block_start: gpu.storage::<u32>("solver.block_start", blocks as usize)?,
             chunk_sums: gpu.storage::<[u32; 2]>("solver.chunk_sums", chunks)?,

@@ -5,6 +5,7 @@ use super::advance::Plan;
 use super::core::{Solver, padded};
 use super::kept::Kept;
 use super::passes::SUBSTEP;
+use super::sph::Sph;
 use super::substance::{self, Activation, Substance};
 use super::types::SolverError;
 use glam::Mat3;
@@ -87,6 +88,11 @@ impl Solver {
             self.laws.all = true;
         }
         self.wet(substances);
+        if self.sph.is_none() && substances.iter().any(Substance::is_sph) {
+            let (sph, kept) = Sph::new(&self.gpu, self.params.count as usize)?;
+            self.sph = Some(sph);
+            self.kept.push(kept);
+        }
         if !substances.iter().any(|s| s.shown_stretch().is_some()) {
             self.laws.shown = None;
         } else if self.laws.shown.is_none() {

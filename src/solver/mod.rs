@@ -22,6 +22,7 @@ mod laws;
 mod liquid;
 mod obstacles;
 mod prestress;
+mod sph;
 mod state;
 mod substance;
 mod types;
@@ -35,7 +36,7 @@ mod tests;
 #[cfg(test)]
 mod twin;
 
-pub use bench::{BenchReport, bench_substep};
+pub use bench::{BenchReport, bench_sph, bench_sph_second, bench_substep};
 pub use change::Moduli;
 pub use core::Solver;
 pub use fields::velocity_change;
@@ -48,6 +49,7 @@ pub fn kernels() -> Vec<KernelSource> {
     all.extend(laws::kernels());
     all.extend(fields::kernels());
     all.extend(liquid::kernels());
+    all.extend(sph::kernels());
     all
 }
 

@@ -7,7 +7,7 @@ const KICK: u32 = 32;
 
 macro_rules! shader {
     ($name:literal) => {
-        (concat!("solver/", $name, ".wgsl"), include_str!(concat!("../../shaders/solver/", $name, ".wgsl")))
+        (concat!("solver/", $name, ".wgsl"), include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/solver/", $name, ".wgsl")))
     };
 }
 
@@ -58,11 +58,11 @@ passes! {
     bin: ["control", "cell", "bin"] [Read, Read, Write, Write, Write] 0;
     scan_sums: ["scan", "scan_sums"] [Read, Read, Write] 0;
     scan_blocks: ["scan", "scan_blocks"] [Read, Write, Read, Write, Write, Write] 0;
-    scan_cells: ["scan", "scan_cells"] [Read, Read, Read, Read, Write] 0;
+    scan_cells: ["scan", "scan_cells"] [Read, Read, Read, Read, Write, Write] 0;
     scatter: ["cell", "scatter"] [Read, Read, Read, Write, Read, Write] 0;
     order: ["order"] [Read, Read, Read, Read, Write, Write] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
-    p2g: ["control", "substep", "hash", "particle", "contact", "p2g"] [Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
+    p2g: ["control", "substep", "substance", "hash", "particle", "contact", "p2g"] [Read, Read, Read, Read, Write, Write, Write, Read] SUBSTEP;
     grid: ["control", "substep", "contact", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write] SUBSTEP;
     g2p: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;

@@ -82,12 +82,13 @@ pub(super) fn initial(particles: &Particles, colliders: &[ColliderRecord], cell_
         return refuse(format!("a particle of substance {row} of {}", particles.substances.len()), "a row of the table");
     }
     for i in 0..n {
-        let (mu_pa, lambda_pa) = particles.lame_pa(i);
+        let beside = particles.substances[usize::from(particles.substance[i])].is_sph();
+        let (mu_pa, lambda_pa) = if beside { (0.0, 0.0) } else { particles.lame_pa(i) };
         let mass_kg = particles.volume_m3[i] * particles.density_kg_m3[i];
         let (x, v) = (particles.position_m[i], particles.velocity_m_s[i]);
-        let liquid = particles.substances[usize::from(particles.substance[i])].is_liquid();
-        let sound =
-            mass_kg > 0.0 && mass_kg.is_finite() && (mu_pa > 0.0 || liquid) && (lambda_pa + 2.0 * mu_pa).is_finite() && lambda_pa + 2.0 * mu_pa > 0.0;
+        let flows = particles.substances[usize::from(particles.substance[i])].is_liquid();
+        let stiff = (mu_pa > 0.0 || flows) && (lambda_pa + 2.0 * mu_pa).is_finite() && lambda_pa + 2.0 * mu_pa > 0.0;
+        let sound = mass_kg > 0.0 && mass_kg.is_finite() && (beside || stiff);
         if !(x.is_finite() && v.is_finite() && sound && particles.object[i] <= 0xffff) {
             let (e, nu) = (particles.young_pa[i], particles.poisson[i]);
             return refuse(
@@ -105,7 +106,7 @@ pub(super) fn initial(particles: &Particles, colliders: &[ColliderRecord], cell_
             volume_m3: particles.volume_m3[i],
             tag: particles.object[i] | u32::from(particles.substance[i]) << 16,
             history: particles.substances[usize::from(particles.substance[i])].first_history(),
-            rest_m: if liquid { REST_CELLS * cell_m } else { distance_m(colliders, x).clamp(-2.0 * REST_CELLS * cell_m, REST_CELLS * cell_m) },
+            rest_m: if flows { REST_CELLS * cell_m } else { distance_m(colliders, x).clamp(-2.0 * REST_CELLS * cell_m, REST_CELLS * cell_m) },
             ..Default::default()
         };
         state.set_f(Mat3::IDENTITY);

@@ -59,6 +59,13 @@ pub enum Substance {
         /// Surface tension, N/m.
         surface_tension_n_m: f32,
     },
+    /// A liquid of smoothed particles, half a cell apart, beside the grid; see `sph`.
+    SphLiquid {
+        /// Dynamic viscosity.
+        viscosity_pa_s: f32,
+        /// Against air.
+        surface_tension_n_m: f32,
+    },
 }
 
 impl Default for Substance {
@@ -124,6 +131,7 @@ pub(super) const VISCOPLASTIC: u32 = 3;
 pub(super) const SAND: u32 = 4;
 pub(super) const SNOW: u32 = 5;
 pub(super) const LIQUID: u32 = 6;
+pub(super) const SPH_LIQUID: u32 = 16;
 
 impl Substance {
     pub(super) fn record(&self) -> SubstanceRecord {
@@ -139,6 +147,7 @@ impl Substance {
             }
             Substance::Snow { theta_c, theta_s, hardening } => (SNOW, 0, [*theta_c, *theta_s, *hardening]),
             Substance::Liquid { viscosity_pa_s, surface_tension_n_m } => (LIQUID, 0, [*viscosity_pa_s, *surface_tension_n_m, 0.0]),
+            Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m } => (SPH_LIQUID, 0, [*viscosity_pa_s, *surface_tension_n_m, 0.0]),
         };
         let [a, b, c] = values;
         SubstanceRecord { kind, model, shown: self.shown_stretch().unwrap_or_default(), values: [a, b, c, 0.0, 0.0, 0.0] }
@@ -153,6 +162,7 @@ impl Substance {
             Substance::Viscoplastic { .. } => Some([0.4, 2.5]),
             Substance::Sand { .. } | Substance::Snow { .. } => Some([0.7, 1.4]),
             Substance::Liquid { .. } => Some([0.6, 1.7]),
+            Substance::SphLiquid { .. } => None,
         }
     }
 
@@ -161,9 +171,14 @@ impl Substance {
         matches!(self, Substance::Liquid { .. })
     }
 
-    /// Whether it is elastic and nothing else, so that the plain passes do.
+    /// Whether it needs no law but the elastic one, so that the plain passes do.
     pub(super) fn is_elastic(&self) -> bool {
-        matches!(self, Substance::Elastic(_))
+        matches!(self, Substance::Elastic(_)) || self.is_sph()
+    }
+
+    /// Whether it is a liquid of smoothed particles, which has no part in the grid.
+    pub(super) fn is_sph(&self) -> bool {
+        matches!(self, Substance::SphLiquid { .. })
     }
 
     /// Whether it can stand as captured, under a prestress.
@@ -208,6 +223,9 @@ impl Substance {
             Substance::Viscoplastic { yield_stress_pa, viscosity_pa_s } => positive.contains(yield_stress_pa) && positive.contains(viscosity_pa_s),
             Substance::Sand { friction_angle_deg, cohesion_pa } => {
                 *friction_angle_deg > 0.0 && *friction_angle_deg < 90.0 && positive.contains(cohesion_pa)
+            }
+            Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m } => {
+                positive.contains(viscosity_pa_s) && positive.contains(surface_tension_n_m)
             }
             Substance::Snow { theta_c, theta_s, hardening } => {
                 *theta_c > 0.0 && *theta_c < 1.0 && *theta_s > 0.0 && *theta_s < 1.0 && (0.0..=20.0).contains(hardening)

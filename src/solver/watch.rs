@@ -19,6 +19,7 @@ pub(super) struct Control {
     high: [i32; 3],
     final_speed: u32,
     wave_speed: u32,
+    crowded: u32,
 }
 
 impl Control {
@@ -36,6 +37,7 @@ impl Control {
         high: [i32::MIN; 3],
         final_speed: 0,
         wave_speed: 0,
+        crowded: 0,
     };
 
     pub fn watch(&self) -> Watch {
@@ -47,6 +49,7 @@ impl Control {
             drift_m_s: 0.0,
             overflow: self.overflow != 0,
             window: self.window != 0,
+            crowded: self.crowded != 0,
             nonfinite: self.nonfinite,
             j_low: value(self.j_low),
             j_high: value(self.j_high),
@@ -77,6 +80,8 @@ pub(super) struct Watch {
     pub drift_m_s: f32,
     pub overflow: bool,
     pub window: bool,
+    /// A list of neighbours was too short.
+    pub crowded: bool,
     pub nonfinite: u32,
     pub j_low: f32,
     pub j_high: f32,
@@ -112,6 +117,9 @@ impl Watch {
         }
         if self.window {
             return Some("particles left the grid".to_owned());
+        }
+        if self.crowded {
+            return Some("particles crowd together".to_owned());
         }
         if self.overflow {
             return Some("momentum left the range of the grid's sums".to_owned());

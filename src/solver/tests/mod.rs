@@ -9,6 +9,7 @@ mod liquid;
 mod motion;
 mod prestress;
 mod shown;
+mod sph;
 mod twins;
 mod validation;
 

@@ -50,6 +50,9 @@ quick_cases! {
     v20_viscous: "V20";
     v22_laplace: "V22";
     v26_liquid_same_bits: "V26 liquid";
+    v18_dam_break_of_particles: "V18 SPH";
+    v19_pool_of_particles: "V19 SPH";
+    v20_channel_of_particles: "V20 SPH";
     v26_same_bits: "V26";
     drag: "drag";
     spring: "spring";

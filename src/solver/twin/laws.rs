@@ -110,6 +110,8 @@ pub fn respond(substance: &Substance, trial: DMat3, m: &Matter, dt_s: f64) -> An
     let young = m.mu * (3.0 * m.lambda + 2.0 * m.mu) / (m.lambda + m.mu);
     let elastic = |model: &ElasticModel| kirchhoff(trial, m.mu, m.lambda, *model == ElasticModel::NeoHookean);
     match substance {
+        // No particle of it is ever asked.
+        Substance::SphLiquid { .. } => Answer { f: trial, history: m.history, tau: DMat3::ZERO },
         Substance::Elastic(model) => Answer { f: trial, history: m.history, tau: elastic(model) },
         Substance::Muscle { model, fibre, .. } => {
             let fibre = trial * fibre.as_dvec3().normalize();

@@ -5,6 +5,7 @@ pub mod liquid;
 pub mod material;
 pub mod prestress;
 pub mod sort;
+pub mod sph;
 
 use super::constants::{GAP_STEPS, REST_CELLS_MAX, SLIPS, WALL_GRIP, WALL_SOON_S};
 use super::core::Params;

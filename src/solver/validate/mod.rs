@@ -13,6 +13,7 @@ mod muscles;
 mod pulled;
 mod repeat;
 mod sliding;
+mod sph;
 mod waves;
 
 #[cfg(test)]
@@ -133,6 +134,10 @@ pub const CASES: &[Case] = &[
     Case { name: "V21", quick: false, run: liquid_rest::swinging },
     Case { name: "V22", quick: true, run: liquid_rest::laplace },
     Case { name: "V26 liquid", quick: true, run: liquid_flow::same_bits },
+    Case { name: "V18 SPH", quick: true, run: sph::dam_break },
+    Case { name: "V19 SPH", quick: true, run: sph::hydrostatic },
+    Case { name: "V20 SPH", quick: true, run: sph::poiseuille },
+    Case { name: "V23 SPH", quick: false, run: sph::buoyancy },
     Case { name: "V26", quick: true, run: repeat::same_bits },
     Case { name: "drag", quick: true, run: driven::drag },
     Case { name: "spring", quick: true, run: driven::spring },

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 #[derive(Args, Debug)]
 pub struct Arguments {
-    /// mpm, skin, render, sort, frame, load, edit, exec, cold, or one size of it, as mpm/100k [default: all]
+    /// mpm, sph, skin, render, sort, frame, load, edit, exec, cold, or one size of it, as mpm/100k [default: all]
     names: Vec<String>,
     /// Scene of frame, load, edit, exec and cold
     #[arg(long, value_name = "FILE", default_value = "builtin:demo")]

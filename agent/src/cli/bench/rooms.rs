@@ -4,7 +4,7 @@ use super::{Job, Timing};
 use crate::cli::exit::{Failure, Kind};
 use phystalk::{render, skin, solver};
 
-/// Particles of `mpm`.
+/// Particles of `mpm` and `sph`.
 const PARTICLES: [(usize, &str); 3] = [(20_000, "20k"), (100_000, "100k"), (1_000_000, "1M")];
 /// Gaussians and particles of `skin`.
 const SKINS: [(usize, usize, &str); 2] = [(100_000, 20_000, "100k/20k"), (1_000_000, 100_000, "1M/100k")];
@@ -24,6 +24,17 @@ pub fn jobs() -> Vec<Job> {
             Ok(Timing { seconds: report.substep_seconds.to_vec(), passes: report.passes })
         };
         jobs.push(Job { name: "mpm", size: size.to_owned(), heavy: particles > 20_000, run: Box::new(run) });
+    }
+    for (particles, size) in PARTICLES {
+        let run = move |gpu: &phystalk::gpu::Gpu| {
+            let report = solver::bench_sph(gpu, particles).map_err(|e| Failure::new(Kind::Unstable, e))?;
+            Ok(Timing { seconds: report.substep_seconds.to_vec(), passes: report.passes })
+        };
+        jobs.push(Job { name: "sph", size: size.to_owned(), heavy: particles > 20_000, run: Box::new(run) });
+        let second = move |gpu: &phystalk::gpu::Gpu| {
+            Ok(Timing::of(vec![solver::bench_sph_second(gpu, particles).map_err(|e| Failure::new(Kind::Unstable, e))?]))
+        };
+        jobs.push(Job { name: "sph", size: format!("{size}, 1 s of it"), heavy: true, run: Box::new(second) });
     }
     for (gaussians, particles, size) in SKINS {
         let run = move |gpu: &phystalk::gpu::Gpu| Ok(Timing::of(skin::bench_skin(gpu, gaussians, particles)?));

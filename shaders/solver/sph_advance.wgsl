@@ -1,0 +1,71 @@
+// End of a substep: the last pressures, and the liquid moves. Solids take what the liquid gave them
+// into their velocity; the grid adds their weight and moves them.
+
+@group(0) @binding(0) var<storage, read> params: Params;
+@group(0) @binding(1) var<storage, read> solve: Solve;
+@group(0) @binding(2) var<storage, read> place: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read> nature: array<vec2<f32>>;
+@group(0) @binding(4) var<storage, read> neighbours: array<u32>;
+@group(0) @binding(5) var<storage, read> near: array<u32>;
+@group(0) @binding(6) var<storage, read> density: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read> pressure: array<f32>;
+@group(0) @binding(8) var<storage, read> base: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read> matter: array<vec4<f32>>;
+@group(0) @binding(10) var<storage, read> objects: array<vec4<f32>>;
+@group(0) @binding(11) var<storage, read> colliders: array<Collider>;
+@group(0) @binding(12) var<storage, read_write> kinematics: array<vec4<f32>>;
+@group(0) @binding(13) var<storage, read_write> kept: array<vec2<f32>>;
+@group(0) @binding(14) var<storage, read_write> control: Control;
+var<immediate> substep: Substep;
+
+// Moves what got behind a surface back onto it; it keeps no inward velocity.
+fn kept_out(x: vec3<f32>, v: vec3<f32>, rest_m: f32) -> array<vec3<f32>, 2> {
+    var outside = x;
+    var u = v;
+    for (var c = 0u; c < params.collider_count; c++) {
+        let t = touch(colliders[c], outside);
+        if (t.distance_m < rest_m) {
+            let normal = surface_normal(colliders[c], t.face, outside);
+            outside += normal * (rest_m - t.distance_m);
+            u -= normal * min(dot(u, normal), 0.0);
+        }
+    }
+    return array<vec3<f32>, 2>(outside, u);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocation_id) lane: u32) {
+    let n = params.count;
+    let i = min(id.x, n - 1u);
+    let list = unpack_near(near[i]);
+    let tag = matter[3u * n + i];
+    let concerned = id.x < n && (list.liquid || list.liquids > 0u);
+    var speed = 0.0;
+    var momentum = 0.0;
+    if (concerned) {
+        var v = base[i].xyz + pushed(i, list);
+        let position = kinematics[i];
+        if (list.liquid) {
+            let moved = kept_out(position.xyz + substep.dt_s * v, v, min(tag.z, 0.0));
+            v = moved[1];
+            kinematics[i] = vec4<f32>(moved[0], position.w);
+            kinematics[n + i] = vec4<f32>(v, kinematics[n + i].w);
+            kept[bitcast<u32>(tag.x)] = vec2<f32>(pressure[i], pressure[n + i]);
+            speed = length(v);
+        } else {
+            v -= substep.dt_s * (params.gravity_m_s2 + objects[bitcast<u32>(tag.y) & 0xffffu].xyz);
+            kinematics[n + i] = vec4<f32>(v, kinematics[n + i].w);
+            momentum = momentum_measure(position.w, v, read_affine(i));
+        }
+    }
+    let momentum_most = subgroupMax(bitcast<u32>(momentum) & 0x7fffffffu);
+    let speed_most = subgroupMax(bitcast<u32>(speed) & 0x7fffffffu);
+    if (lane == 0u) {
+        if (momentum_most > atomicLoad(&control.momentum[substep.index & 1u])) {
+            atomicMax(&control.momentum[substep.index & 1u], momentum_most);
+        }
+        if (speed_most > atomicLoad(&control.speed)) {
+            atomicMax(&control.speed, speed_most);
+        }
+    }
+}

@@ -1,0 +1,23 @@
+// End of a correction: its pressures become part of the velocities.
+
+@group(0) @binding(0) var<storage, read> params: Params;
+@group(0) @binding(1) var<storage, read> solve: Solve;
+@group(0) @binding(2) var<storage, read> place: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read> nature: array<vec2<f32>>;
+@group(0) @binding(4) var<storage, read> neighbours: array<u32>;
+@group(0) @binding(5) var<storage, read> near: array<u32>;
+@group(0) @binding(6) var<storage, read> density: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read> pressure: array<f32>;
+@group(0) @binding(8) var<storage, read_write> base: array<vec4<f32>>;
+var<immediate> substep: Substep;
+
+@compute @workgroup_size(WORKGROUP)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x >= params.count) {
+        return;
+    }
+    let list = unpack_near(near[id.x]);
+    if (list.liquid || list.liquids > 0u) {
+        base[id.x] += vec4<f32>(pushed(id.x, list), 0.0);
+    }
+}

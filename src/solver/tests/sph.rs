@@ -1,0 +1,338 @@
+//! Liquids of smoothed particles: each pass against its twin, and what a run keeps.
+
+use super::{block, solver};
+use crate::Stop;
+use crate::gpu::{Gpu, Recording};
+use crate::solver::advance::Substep;
+use crate::solver::constants::{MOMENTUM, SPH_RELAX, SPH_SLOTS};
+use crate::solver::core::Solver;
+use crate::solver::obstacles;
+use crate::solver::state::ParticleState;
+use crate::solver::twin::{self, Surroundings};
+use crate::solver::{Collider, Particles, Plane, Settings, Substance};
+use crate::spec::{BoxShape, ColliderShape, ElasticModel, PlaneShape};
+use glam::{DVec3, Vec3};
+
+const D_M: f32 = 0.025;
+const CELL_M: f32 = 2.0 * D_M;
+const DT_S: f32 = 2e-3;
+
+/// Between -1 and 1, always the same.
+struct Noise(u32);
+
+impl Noise {
+    fn vec(&mut self) -> Vec3 {
+        let mut next = || {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (self.0 >> 8) as f32 / (1 << 23) as f32 - 1.0
+        };
+        Vec3::new(next(), next(), next())
+    }
+}
+
+fn gpu() -> Gpu {
+    Gpu::shared_for_tests().expect("a device")
+}
+
+fn liquid(low: Vec3, size: Vec3, viscosity_pa_s: f32, surface_tension_n_m: f32) -> Particles {
+    let substances = vec![Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m }];
+    Particles { substances, ..block(low, size, D_M, 1e5, 0.3) }
+}
+
+fn with(mut a: Particles, b: Particles, substance: Substance) -> Particles {
+    let n = b.len();
+    a.position_m.extend(b.position_m);
+    a.velocity_m_s.extend(b.velocity_m_s);
+    a.volume_m3.extend(b.volume_m3);
+    a.density_kg_m3.extend(b.density_kg_m3.iter().map(|rho| rho * 0.5));
+    a.young_pa.extend(b.young_pa);
+    a.poisson.extend(b.poisson);
+    a.substance.extend(vec![a.substances.len() as u16; n]);
+    a.substances.push(substance);
+    a.object.extend(vec![1; n]);
+    a
+}
+
+fn wall(point: Vec3, normal: Vec3) -> Collider {
+    let plane = PlaneShape { point_m: point.as_dvec3().into(), normal: normal.as_dvec3().into() };
+    Collider { shape: ColliderShape::Plane(plane), friction: 0.0, restitution: 0.0 }
+}
+
+fn momentum(states: &[ParticleState]) -> DVec3 {
+    states.iter().map(|s| s.velocity_m_s.as_dvec3() * f64::from(s.mass_kg)).sum()
+}
+
+#[test]
+fn closed_forms_of_walls_are_the_integrals_of_the_kernel() {
+    let whole: f64 =
+        (0..2000).map(|k| (f64::from(k) + 0.5) / 2000.0).map(|q| 4.0 * std::f64::consts::PI * q * q * twin::sph::weight(q) / 2000.0).sum();
+    assert!((whole - 1.0).abs() < 1e-5, "{whole}");
+    // Half of a kernel lies behind a wall through its middle.
+    assert!((twin::sph::wall_share(0.0) - 0.5).abs() < 1e-5);
+    assert!((twin::sph::wall_slope(0.0) - 1.4).abs() < 1e-5);
+}
+
+/// A jittered liquid in the corner of two walls and the ground, beside a lighter elastic block, all
+/// moving, and the solver ready to record passes.
+fn scene(viscosity_pa_s: f32) -> (Solver, Vec<ParticleState>) {
+    let mut noise = Noise(5);
+    let fluid = liquid(Vec3::ZERO, Vec3::new(0.125, 0.1, 0.125), viscosity_pa_s, 2.0);
+    let solid = block(Vec3::new(0.125, 0.0, 0.0), Vec3::new(0.075, 0.1, 0.1), D_M, 1e5, 0.3);
+    let mut particles = with(fluid, solid, Substance::Elastic(ElasticModel::Corotated));
+    for (x, v) in particles.position_m.iter_mut().zip(&mut particles.velocity_m_s) {
+        *x += noise.vec() * (0.2 * D_M);
+        *v = Vec3::new(0.3, -0.1, -0.4) + noise.vec() * 0.5;
+    }
+    let mut settings = Settings::new(CELL_M);
+    settings.ground = Some(Plane { height_m: -0.004, friction: 0.4, restitution: 0.0 });
+    let post = BoxShape { centre_m: [-0.055, 0.1, 0.1], size_m: [0.1, 0.6, 0.6] };
+    settings.colliders =
+        vec![Collider { shape: ColliderShape::Box(post), friction: 0.3, restitution: 0.0 }, wall(Vec3::new(0.0, -0.007, 0.0), Vec3::Y)];
+    settings.forces = vec![crate::solver::ObjectForce { object: 1, from_s: 0.0, to_s: 1.0, acceleration_m_s2: Vec3::new(3.0, -2.0, 1.0) }];
+    let mut solver = solver(settings, &particles);
+    let seen = solver.look().expect("a look");
+    solver.fit_window(seen.low, seen.high, 4).expect("a window");
+    solver.set_surroundings();
+    solver.start_segment();
+    let pressures: Vec<[f32; 2]> = (0..particles.len()).map(|_| [300.0 + 300.0 * noise.vec().x, 50.0 + 50.0 * noise.vec().y]).collect();
+    gpu().upload(&solver.kept.last().expect("pressures").live, &pressures);
+    let states = solver.states().expect("states");
+    (solver, states)
+}
+
+fn close(what: &str, got: Vec3, want: DVec3, tolerance: f64) {
+    assert!((got.as_dvec3() - want).length() <= tolerance, "{what}: {got} on the device, {want} by the twin");
+}
+
+fn read(buffer: &wgpu::Buffer, n: usize) -> Vec<[f32; 4]> {
+    gpu().read(buffer, n).expect("values")
+}
+
+fn vectors(values: &[[f32; 4]]) -> Vec<DVec3> {
+    values.iter().map(|v| Vec3::from_slice(v).as_dvec3()).collect()
+}
+
+#[test]
+fn one_substep_pass_by_pass() {
+    let (mut solver, states) = scene(0.5);
+    let n = states.len();
+    let groups = solver.particle_groups();
+    let bound = solver.bind_both().expect("bound");
+    let run = |build: &dyn Fn(&mut Recording)| {
+        let mut recording = Recording::default();
+        build(&mut recording);
+        gpu().submit(&recording);
+    };
+    run(&|r| solver.record_sort(&bound[solver.current], r));
+    solver.current = 1 - solver.current;
+    let matter: Vec<[f32; 4]> = gpu().read(&solver.buffers[solver.current].matter, 4 * n).expect("matter");
+    let order: Vec<usize> = (0..n).map(|i| matter[3 * n + i][0].to_bits() as usize).collect();
+    let kept: Vec<[f32; 2]> = gpu().read(&solver.kept.last().expect("pressures").live, n).expect("pressures");
+    let sorted: Vec<ParticleState> = order.iter().map(|&i| states[i]).collect();
+    let colliders = obstacles::colliders(&solver.settings);
+    let accelerations = [Vec3::ZERO, Vec3::new(3.0, -2.0, 1.0)];
+    let substances = solver.laws.substances.clone();
+    let around = Surroundings { params: solver.params, colliders: &colliders, pins: &[], accelerations: &accelerations, substances: &substances };
+    let (cell, dt) = (f64::from(CELL_M), f64::from(DT_S));
+    let sph = solver.sph().expect("a liquid");
+    let b = bound[solver.current].sph.as_ref().expect("bound");
+    let p = &sph.passes;
+    let substep = |job: u32| Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job, since_s: 0.0 };
+
+    // Lists and sums.
+    run(&|r| {
+        r.dispatch(&p.sph_place, &b.place, groups);
+        r.dispatch(&p.sph_near, &b.near, groups);
+    });
+    let mut want = twin::sph::near(&sorted, &around);
+    let near: Vec<u32> = gpu().read(&sph.near, n).expect("lists");
+    let (density, surface) = (read(&sph.density, n), read(&sph.surface, n));
+    let answer: Vec<f32> = gpu().read(&sph.answer, n).expect("answers");
+    let concerned: Vec<usize> = (0..n).filter(|&i| want[i].liquid || !want[i].neighbours.is_empty()).collect();
+    assert!(concerned.len() > n / 2 && concerned.iter().filter(|&&i| !want[i].liquid).count() > 20);
+    for i in 0..n {
+        let solids = want[i].neighbours.iter().filter(|&&j| !want[j].liquid).count();
+        let listed = [near[i] & 0xfff, near[i] >> 12 & 0xfff, near[i] >> 31];
+        assert_eq!(listed, [(want[i].neighbours.len() - solids) as u32, solids as u32, u32::from(want[i].liquid)], "lists of {i}");
+        if want[i].liquid {
+            close("gradient", Vec3::from_slice(&density[i]), want[i].gradient, 2e-4);
+            close("surface", Vec3::from_slice(&surface[i]), want[i].surface, 2e-4);
+            assert!((f64::from(density[i][3]) - want[i].density).abs() < 1e-5, "{} {}", density[i][3], want[i].density);
+            assert!((f64::from(answer[i]) / want[i].answer - 1.0).abs() < 1e-3, "{} {}", answer[i], want[i].answer);
+        }
+    }
+    let errors: Vec<u32> = gpu().read(&sph.errors, SPH_SLOTS as usize).expect("errors");
+    let stiffest = want.iter().map(|p| p.viscous).fold(0.0, f64::max);
+    assert!((f64::from(f32::from_bits(errors[SPH_SLOTS as usize - 1])) / stiffest - 1.0).abs() < 1e-3);
+
+    // A round that removes divergence, and its end.
+    run(&|r| {
+        r.dispatch_with(&p.sph_press, &b.press_divergence, &substep(0), groups);
+        r.dispatch_with(&p.sph_correct, &b.correct_divergence, &substep(0), groups);
+    });
+    let start: Vec<f64> = order.iter().zip(&want).map(|(&i, p)| if p.liquid { f64::from(kept[i][1]) } else { 0.0 }).collect();
+    let pushed = twin::sph::pushed(&want, &start, cell, dt);
+    let corrected: Vec<DVec3> = want.iter().zip(&pushed).map(|(p, dv)| p.v + *dv).collect();
+    let got = read(&sph.corrected, n);
+    let check_pressures = |want: &[twin::sph::Particle], of_density: f64, start: &[f64], corrected: &[DVec3], first: usize| -> Vec<f64> {
+        let got: Vec<f32> = gpu().read(&sph.pressure, 2 * n).expect("pressures");
+        let next = |i: usize| {
+            let full = FULL_STEP * twin::sph::error(want, i, corrected, of_density, cell, dt) * want[i].answer * (cell / dt).powi(2);
+            let few = of_density == 0.0 && want[i].neighbours.len() < crate::solver::constants::FEW_NEIGHBOURS as usize;
+            if few || !want[i].liquid { 0.0 } else { (start[i] + full).max(0.0) }
+        };
+        for i in (0..n).filter(|&i| want[i].liquid) {
+            assert!((f64::from(got[first + i]) - next(i)).abs() < 0.3 + 2e-3 * next(i).abs(), "pressure of {i}: {} {}", got[first + i], next(i));
+        }
+        (0..n).map(|i| f64::from(got[first + i])).collect()
+    };
+    for &i in &concerned {
+        close("corrected", Vec3::from_slice(&got[i]), corrected[i], 1e-4);
+    }
+    let reached = check_pressures(&want, 0.0, &start, &corrected, n);
+    run(&|r| r.dispatch_with(&p.sph_apply, &b.apply, &substep(0), groups));
+    let pushed = twin::sph::pushed(&want, &reached, cell, dt);
+    let got = read(&sph.motion, n);
+    for &i in &concerned {
+        close("free of divergence", Vec3::from_slice(&got[i]), want[i].v + pushed[i], 1e-4);
+    }
+
+    // Forces, with viscosity and without, and the implicit one.
+    for (p, v) in want.iter_mut().zip(vectors(&got)) {
+        p.v = v;
+    }
+    for job in [0, 1] {
+        run(&|r| r.dispatch_with(&p.sph_forces, &b.forces, &substep(job), groups));
+        let (got, forced) = (read(&sph.predicted, n), twin::sph::forces(&want, &around, dt, job == 0));
+        for &i in &concerned {
+            close("forces", Vec3::from_slice(&got[i]), forced[i], 2e-3 * (forced[i] - want[i].v).length() + 1e-4);
+        }
+    }
+    let wanted = vectors(&read(&sph.predicted, n));
+    run(&|r| {
+        for round in 0..40 {
+            let bound = if round == 0 { &b.implicit[0] } else { &b.implicit[2 - (round % 2) as usize] };
+            r.dispatch_with(&p.sph_implicit, bound, &substep(round), groups);
+        }
+    });
+    let (got, slowed) = (read(&sph.motion, n), twin::sph::implicit(&want, &wanted, &around, dt));
+    for &i in &concerned {
+        close("implicit viscosity", Vec3::from_slice(&got[i]), slowed[i], 1e-3);
+    }
+
+    // A round that keeps the density, and the end of the substep.
+    run(&|r| {
+        r.dispatch_with(&p.sph_press, &b.press_density[1], &substep(0), groups);
+        r.dispatch_with(&p.sph_correct, &b.correct_density, &substep(0), groups);
+        r.dispatch_with(&p.sph_advance, &b.advance[1], &substep(0), groups);
+    });
+    let start: Vec<f64> = order.iter().zip(&want).map(|(&i, p)| if p.liquid { f64::from(kept[i][0]) } else { 0.0 }).collect();
+    let base = vectors(&got);
+    let corrected: Vec<DVec3> = base.iter().zip(twin::sph::pushed(&want, &start, cell, dt)).map(|(v, dv)| *v + dv).collect();
+    let reached = check_pressures(&want, 1.0, &start, &corrected, 0);
+    let pushed = twin::sph::pushed(&want, &reached, cell, dt);
+    let after = solver.states().expect("states");
+    for i in 0..n {
+        let (me, s) = (&want[i], &after[order[i]]);
+        let mut v = base[i] + pushed[i];
+        if !me.liquid {
+            v -= (Vec3::from(around.params.gravity_m_s2) + accelerations[1]).as_dvec3() * dt;
+            let untouched = me.neighbours.is_empty();
+            close("solid", s.velocity_m_s, if untouched { sorted[i].velocity_m_s.as_dvec3() } else { v }, 2e-4);
+            assert_eq!(s.position_m, sorted[i].position_m);
+            continue;
+        }
+        let mut x = me.x + v * dt;
+        for c in &colliders {
+            let touch = c.touch(x.as_vec3());
+            let behind = f64::from(s.rest_m.min(0.0) - touch.distance_m);
+            if behind > 0.0 {
+                let normal = c.normal(touch.face, x.as_vec3()).as_dvec3();
+                x += normal * behind;
+                v -= normal * v.dot(normal).min(0.0);
+            }
+        }
+        close("position", s.position_m, x, 1e-6);
+        close("velocity", s.velocity_m_s, v, 2e-4);
+    }
+}
+
+/// The first round has no momentum yet.
+const FULL_STEP: f64 = SPH_RELAX as f64;
+const _: () = assert!(MOMENTUM < 1.0);
+
+#[test]
+fn nothing_outside_changes_momentum_in_free_flight() {
+    let fluid = liquid(Vec3::ZERO, Vec3::splat(0.15), 0.5, 1.0);
+    let solid = block(Vec3::new(0.15, 0.0, 0.0), Vec3::splat(0.1), D_M, 5e4, 0.3);
+    let mut particles = with(fluid, solid, Substance::Elastic(ElasticModel::Corotated));
+    for (v, x) in particles.velocity_m_s.iter_mut().zip(&particles.position_m) {
+        *v = Vec3::new(2.0, 0.05, 0.0) - (*x - Vec3::splat(0.1)) * 2.0;
+    }
+    let settings = Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) };
+    let mut solver = solver(settings, &particles);
+    let before = momentum(&solver.states().expect("states"));
+    let mass: f64 = solver.states().expect("states").iter().map(|s| f64::from(s.mass_kg)).sum();
+    solver.advance(0.1, &Stop::default()).expect("an advance");
+    let states = solver.states().expect("states");
+    let given: DVec3 = states.iter().filter(|s| s.object() == 1).map(|s| s.velocity_m_s.as_dvec3() * f64::from(s.mass_kg)).sum();
+    assert!((given.x - 2.0 * mass * 0.128).abs() > 1e-3 * mass, "the two touched");
+    let lost = (momentum(&states) - before).length() / mass;
+    assert!(lost < 1e-5, "{lost} m/s");
+}
+
+#[test]
+fn two_runs_and_a_resumed_one_end_in_the_same_bits() {
+    let build = || {
+        let mut particles = with(
+            liquid(Vec3::new(0.0, 0.0, 0.01), Vec3::splat(0.125), 0.01, 0.07),
+            block(Vec3::new(0.0, 0.0, 0.16), Vec3::splat(0.075), D_M, 5e4, 0.3),
+            Substance::default(),
+        );
+        particles.velocity_m_s.fill(Vec3::new(0.4, 0.1, -1.0));
+        let mut settings = Settings::new(CELL_M);
+        settings.ground = Some(Plane { height_m: 0.0, friction: 0.3, restitution: 0.0 });
+        solver(settings, &particles)
+    };
+    let stop = Stop::default();
+    let mut first = build();
+    first.advance(0.04, &stop).expect("an advance");
+    let kept = first.checkpoint().expect("a checkpoint");
+    first.kick(0, Vec3::Y);
+    first.advance(0.08, &stop).expect("an advance");
+    let mut second = build();
+    second.advance(0.02, &stop).expect("an advance");
+    second.advance(0.04, &stop).expect("an advance");
+    assert!(kept == second.checkpoint().expect("a checkpoint"), "frame by frame differs from one call");
+    let mut third = build();
+    third.restore(&kept).expect("a restore");
+    third.kick(0, Vec3::Y);
+    third.advance(0.08, &stop).expect("an advance");
+    assert!(first.checkpoint().expect("a checkpoint") == third.checkpoint().expect("a checkpoint"), "a resumed run differs");
+}
+
+#[test]
+fn crowded_lists_grow_and_overlapping_bodies_part_without_flying_off() {
+    let mut particles = liquid(Vec3::ZERO, Vec3::splat(0.1), 0.01, 0.0);
+    for shift in [0.3, 0.6] {
+        let other = liquid(Vec3::splat(shift * D_M), Vec3::splat(0.1), 0.01, 0.0);
+        particles.position_m.extend(other.position_m);
+        particles.velocity_m_s.extend(other.velocity_m_s);
+        particles.volume_m3.extend(other.volume_m3);
+        particles.density_kg_m3.extend(other.density_kg_m3);
+        particles.young_pa.extend(other.young_pa);
+        particles.poisson.extend(other.poisson);
+        particles.substance.extend(other.substance);
+        particles.object.extend(other.object);
+    }
+    let settings = Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) };
+    let mut solver = solver(settings, &particles);
+    let report = solver.advance(0.5, &Stop::default()).expect("an advance");
+    assert!(report.retries > 0, "lists of 64 are too short for three bodies in one place");
+    let states = solver.states().expect("states");
+    let fastest = states.iter().map(|s| s.velocity_m_s.length()).fold(0.0, f32::max);
+    assert!(fastest < 1.0, "{fastest} m/s");
+    let density = read(&solver.sph().expect("a liquid").density, states.len());
+    let mean = density.iter().map(|v| v[3]).sum::<f32>() / states.len() as f32;
+    assert!(mean < 1.02, "still {mean} times as dense");
+}

@@ -1,0 +1,253 @@
+//! The passes of the smoothed particles: all pairs, derivatives of the kernel by differences, f64.
+
+use super::Surroundings;
+use crate::solver::constants::*;
+use crate::solver::state::ParticleState;
+use crate::solver::substance::Substance;
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
+
+/// W of unit support.
+pub fn weight(q: f64) -> f64 {
+    let inner = (1.0 - 2.0 * q).max(0.0).powi(3);
+    // Monaghan's form: (2 - r)^3 - 4 (1 - r)^3 over 4 pi, with r = 2 q and the support's cube.
+    8.0 / (4.0 * PI) * ((2.0 - 2.0 * q).max(0.0).powi(3) - 4.0 * inner)
+}
+
+/// W between a liquid and a solid particle.
+pub fn solid_weight(q: f64) -> f64 {
+    f64::from(SOLID_STRENGTH) * PI / 8.0 * weight(q).powi(2)
+}
+
+fn derivative(f: impl Fn(f64) -> f64, at: f64) -> f64 {
+    let step = 1e-6;
+    (f(at + step) - f(at - step)) / (2.0 * step)
+}
+
+/// W integrated over a plane at a distance from the particle, by the rule of midpoints.
+pub fn wall_slope(s: f64) -> f64 {
+    let (s, parts) = (s.abs().min(1.0), 500);
+    let step = (1.0 - s) / f64::from(parts);
+    (0..parts).map(|k| s + (f64::from(k) + 0.5) * step).map(|r| 2.0 * PI * r * weight(r) * step).sum()
+}
+
+/// And over all behind it.
+pub fn wall_share(s: f64) -> f64 {
+    let parts = 100;
+    let step = (1.0 - s) / f64::from(parts);
+    (0..parts).map(|k| wall_slope(s + (f64::from(k) + 0.5) * step) * step).sum()
+}
+
+/// Viscous coupling to a wall over which the velocity goes on linearly to 0 on it.
+pub fn wall_drag(s: f64) -> f64 {
+    let s = s.max(0.125);
+    let parts = 120;
+    let layer = |z: f64| {
+        let step = (1.0 - z) / f64::from(parts);
+        let ring = |r: f64| PI * r * (r * r - z * z) * -derivative(weight, r) / (r * r * r) * step;
+        (0..parts).map(|k| ring(z + (f64::from(k) + 0.5) * step)).sum::<f64>()
+    };
+    let step = (1.0 - s) / f64::from(parts);
+    (0..parts).map(|k| s + (f64::from(k) + 0.5) * step).map(|z| z * layer(z) * step).sum::<f64>() / s
+}
+
+/// A particle as the passes see it, in the order of the sort.
+#[derive(Clone, Debug)]
+pub struct Particle {
+    pub x: DVec3,
+    /// Cells.
+    pub volume: f64,
+    pub liquid: bool,
+    /// 1 / density.
+    pub lightness: f64,
+    pub viscosity: f64,
+    pub tension: f64,
+    pub object: usize,
+    pub v: DVec3,
+    /// Sums over neighbours.
+    pub neighbours: Vec<usize>,
+    pub gradient: DVec3,
+    pub density: f64,
+    pub surface: DVec3,
+    pub answer: f64,
+    pub viscous: f64,
+}
+
+/// `sph_place.wgsl` and `sph_near.wgsl`.
+pub fn near(states: &[ParticleState], around: &Surroundings) -> Vec<Particle> {
+    let cell = f64::from(around.params.cell_m);
+    let place = |s: &ParticleState| {
+        let (liquid, viscosity, tension) = match around.substances[s.substance()] {
+            Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m } => (true, f64::from(viscosity_pa_s), f64::from(surface_tension_n_m)),
+            _ => (false, 0.0, 0.0),
+        };
+        let stretch = if liquid { 1.0 } else { f64::from(s.f().determinant()).clamp(0.1, 10.0) };
+        let volume = f64::from(s.volume_m3) * stretch;
+        Particle {
+            x: s.position_m.as_dvec3(),
+            volume: volume / cell.powi(3),
+            liquid,
+            lightness: volume / f64::from(s.mass_kg),
+            viscosity,
+            tension,
+            object: s.object() as usize,
+            v: s.velocity_m_s.as_dvec3(),
+            neighbours: Vec::new(),
+            gradient: DVec3::ZERO,
+            density: 0.0,
+            surface: DVec3::ZERO,
+            answer: 0.0,
+            viscous: 0.0,
+        }
+    };
+    let mut all: Vec<Particle> = states.iter().map(place).collect();
+    for i in 0..all.len() {
+        let mut me = all[i].clone();
+        me.density = if me.liquid { me.volume * weight(0.0) } else { 0.0 };
+        for (j, other) in all.iter().enumerate() {
+            let y = (me.x - other.x) / cell;
+            let q = y.length();
+            if j == i || q >= 1.0 || !(me.liquid || other.liquid) {
+                continue;
+            }
+            me.neighbours.push(j);
+            let (felt, slope) = felt(&me, other, q);
+            me.density += other.volume * felt;
+            me.gradient += y / q * (other.volume * slope);
+            me.surface += y / q * (other.volume * derivative(weight, q));
+            me.answer += me.volume * other.volume * slope * slope * other.lightness;
+            me.viscous += 2.0 * pair_viscosity(&me, other) * other.volume * -derivative(weight, q) * q / (q * q + 0.01);
+        }
+        if me.liquid {
+            walls(&mut me, around);
+            me.answer = 1.0 / (me.answer + me.gradient.length_squared() * me.lightness).max(1e-3 * me.lightness);
+        }
+        me.viscous *= f64::from(VISCOUS) * me.lightness / (cell * cell);
+        (all[i].neighbours, all[i].density, all[i].gradient) = (me.neighbours, me.density, me.gradient);
+        (all[i].surface, all[i].answer, all[i].viscous) = (me.surface, me.answer, me.viscous);
+    }
+    all
+}
+
+/// W and W' of the kernel that two feel each other by.
+fn felt(a: &Particle, b: &Particle, q: f64) -> (f64, f64) {
+    if a.liquid == b.liquid { (weight(q), derivative(weight, q)) } else { (solid_weight(q), derivative(solid_weight, q)) }
+}
+
+fn pair_viscosity(a: &Particle, b: &Particle) -> f64 {
+    let sum = a.viscosity + b.viscosity;
+    if a.viscosity > 0.0 && b.viscosity > 0.0 { 0.5 * sum } else { sum }
+}
+
+/// Distance in cells, normal and whether it holds, of each wall in reach.
+fn walls_near(x: DVec3, around: &Surroundings) -> Vec<(f64, DVec3, bool)> {
+    let of = |c: &crate::solver::obstacles::ColliderRecord| {
+        let touch = c.touch(x.as_vec3());
+        let s = f64::from(touch.distance_m / around.params.cell_m);
+        (s < 1.0).then(|| (s, c.normal(touch.face, x.as_vec3()).as_dvec3(), c.surface[0] > 0.0))
+    };
+    around.colliders.iter().filter_map(of).collect()
+}
+
+fn walls(me: &mut Particle, around: &Surroundings) {
+    let near = walls_near(me.x, around);
+    let wall_density = |s: f64| f64::from(WALL_STRENGTH) * (1.0 - s / f64::from(WALL_REACH)).max(0.0).powi(2);
+    for (k, &(s, normal, holds)) in near.iter().enumerate() {
+        me.density += wall_density(s);
+        me.gradient += normal * derivative(wall_density, s);
+        let open: f64 = near.iter().enumerate().filter(|&(l, _)| l != k).map(|(_, w)| 1.0 - wall_share(w.0)).product();
+        me.surface -= normal * (wall_slope(s) * open);
+        me.viscous += if holds { me.viscosity * wall_drag(s) } else { 0.0 };
+    }
+}
+
+/// `sph_push.wgsl`: change of each velocity by pressures, over `dt_s`.
+pub fn pushed(all: &[Particle], pressure: &[f64], cell: f64, dt_s: f64) -> Vec<DVec3> {
+    let of = |(i, me): (usize, &Particle)| {
+        let mut sum = if me.liquid { me.gradient * pressure[i] } else { DVec3::ZERO };
+        for &j in me.neighbours.iter().filter(|&&j| all[j].liquid) {
+            let y = (me.x - all[j].x) / cell;
+            sum += y.normalize() * (all[j].volume * pressure[j] * felt(me, &all[j], y.length()).1);
+        }
+        sum * (-dt_s * me.lightness / cell)
+    };
+    all.iter().enumerate().map(of).collect()
+}
+
+/// `sph_correct.wgsl`: the error that a liquid particle is left with.
+pub fn error(all: &[Particle], i: usize, corrected: &[DVec3], of_density: f64, cell: f64, dt_s: f64) -> f64 {
+    let me = &all[i];
+    if of_density == 0.0 && me.neighbours.len() < FEW_NEIGHBOURS as usize {
+        return 0.0;
+    }
+    let mut rate = me.gradient.dot(corrected[i]);
+    for &j in &me.neighbours {
+        let y = (me.x - all[j].x) / cell;
+        rate -= all[j].volume * felt(me, &all[j], y.length()).1 * corrected[j].dot(y.normalize());
+    }
+    of_density * (me.density - 1.0).min(f64::from(THIN_OUT) * dt_s) + rate / cell * dt_s
+}
+
+/// `sph_forces.wgsl`: velocities after weight, tension and, where `viscous`, viscosity.
+pub fn forces(all: &[Particle], around: &Surroundings, dt_s: f64, viscous: bool) -> Vec<DVec3> {
+    let cell = f64::from(around.params.cell_m);
+    let (apart, strength) = (f64::from(KEEP_APART), f64::from(KEEP_APART_STRENGTH));
+    let of = |me: &Particle| {
+        let mut sum = DVec3::ZERO;
+        for &j in &me.neighbours {
+            let other = &all[j];
+            let y = (me.x - other.x) / cell;
+            let (q, along) = (y.length(), y.normalize());
+            let pull = me.surface * me.tension - if other.liquid { other.surface * other.tension } else { DVec3::ZERO };
+            let first = derivative(weight, q);
+            let second = derivative(|r| derivative(weight, r), q);
+            let hessian = pull * (first / q) + along * ((second - first / q) * pull.dot(along));
+            let push = strength * (1.0 - q / apart).max(0.0) - f64::from(COHESION) * (1.0 - q).powi(2) * (q - apart).max(0.0);
+            sum += along * (push * 0.5 * (me.tension + other.tension) / me.volume) - hessian * (f64::from(TENSION) * other.volume);
+            let approach = (me.v - other.v).dot(along);
+            let eddy = f64::from(EDDIES) * cell * approach.abs() * 2.0 / (me.lightness + other.lightness);
+            let eta = eddy + if viscous { pair_viscosity(me, other) } else { 0.0 };
+            sum += along * (f64::from(VISCOUS) * eta * other.volume * first * approach * q / (q * q + 0.01));
+        }
+        if me.liquid {
+            for (s, normal, holds) in walls_near(me.x, around) {
+                sum += normal * (f64::from(TENSION) * me.tension * me.surface.dot(normal) * derivative(wall_slope, s));
+                let along = me.v - normal * me.v.dot(normal);
+                sum -= if holds && viscous { along * (f64::from(VISCOUS) * me.viscosity * wall_drag(s)) } else { DVec3::ZERO };
+            }
+        }
+        let weight_m_s2 = (Vec3::from(around.params.gravity_m_s2) + around.accelerations[me.object]).as_dvec3();
+        me.v + (weight_m_s2 + sum * (me.lightness / (cell * cell))) * dt_s
+    };
+    all.iter().map(of).collect()
+}
+
+/// `sph_implicit.wgsl`, with an exact answer: (1 - dt L) v = v*, by Gauss and Seidel.
+pub fn implicit(all: &[Particle], wanted: &[DVec3], around: &Surroundings, dt_s: f64) -> Vec<DVec3> {
+    let cell = f64::from(around.params.cell_m);
+    let mut v = wanted.to_vec();
+    for _ in 0..200 {
+        for (i, me) in all.iter().enumerate() {
+            let common = dt_s * f64::from(VISCOUS) * me.lightness / (cell * cell);
+            let (mut matrix, mut right) = (glam::DMat3::IDENTITY, wanted[i]);
+            for &j in &me.neighbours {
+                let y = (me.x - all[j].x) / cell;
+                let (q, along) = (y.length(), y.normalize());
+                let coupling = common * pair_viscosity(me, &all[j]) * all[j].volume * -derivative(weight, q) * q / (q * q + 0.01);
+                matrix += outer(along, along) * coupling;
+                right += along * (coupling * v[j].dot(along));
+            }
+            for (s, normal, holds) in walls_near(me.x, around) {
+                if me.liquid && holds {
+                    matrix += (glam::DMat3::IDENTITY - outer(normal, normal)) * (common * me.viscosity * wall_drag(s));
+                }
+            }
+            v[i] = matrix.inverse() * right;
+        }
+    }
+    v
+}
+
+fn outer(a: DVec3, b: DVec3) -> glam::DMat3 {
+    glam::DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}

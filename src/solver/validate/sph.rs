@@ -1,0 +1,249 @@
+//! Liquids of smoothed particles: V18 to V20 and V23.
+
+use super::bodies::block;
+use super::{Check, Plot};
+use crate::Stop;
+use crate::gpu::Gpu;
+use crate::solver::core::Solver;
+use crate::solver::state::ParticleState;
+use crate::solver::substance::Substance;
+use crate::solver::types::{Collider, Particles, Plane, Settings, SolverError};
+use crate::spec::{ColliderShape, PlaneShape};
+use glam::{EulerRot, Quat, Vec3};
+
+const D_M: f32 = 0.01;
+const GRAVITY_M_S2: f64 = 9.81;
+
+/// A box of liquid of 1000 kg/m^3, so many particles along each axis.
+fn liquid(low_m: Vec3, counts: [u32; 3], viscosity_pa_s: f32, surface_tension_n_m: f32) -> Particles {
+    let size = Vec3::from(counts.map(|c| c as f32)) * D_M;
+    let substances = vec![Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m }];
+    Particles { substances, ..block(low_m, size, D_M, 1.0, 0.0) }
+}
+
+/// A wall through a point; one of friction 0 lets a liquid slip, any other holds it.
+fn wall(point_m: Vec3, normal: Vec3, friction: f32) -> Collider {
+    let plane = PlaneShape { point_m: point_m.as_dvec3().into(), normal: normal.as_dvec3().into() };
+    Collider { shape: ColliderShape::Plane(plane), friction, restitution: 0.0 }
+}
+
+/// Walls at both ends of an axis.
+fn between(low: f32, high: f32, axis: Vec3, friction: f32) -> [Collider; 2] {
+    [wall(axis * low, axis, friction), wall(axis * high, -axis, friction)]
+}
+
+fn slippery_ground(settings: &mut Settings) {
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.0, restitution: 0.0 });
+}
+
+/// Front of a collapsing column of width a and height 2a: (t sqrt(2 g / a), front / a), their second set.
+const MARTIN_MOYCE: [[f64; 2]; 5] = [[0.832, 1.217], [1.219, 1.474], [1.997, 2.292], [2.547, 2.995], [3.345, 4.134]];
+
+/// V18: the front of a collapsing column of water on a dry floor.
+pub(super) fn dam_break(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    const ACROSS: u32 = 16;
+    const THICK: u32 = 4;
+    let a = ACROSS as f32 * D_M;
+    let particles = liquid(Vec3::ZERO, [ACROSS, THICK, 2 * ACROSS], 1e-3, 0.0);
+    let mut settings = Settings::new(2.0 * D_M);
+    slippery_ground(&mut settings);
+    settings.colliders = between(0.0, THICK as f32 * D_M, Vec3::Y, 0.0).into();
+    settings.colliders.push(wall(Vec3::ZERO, Vec3::X, 0.0));
+    let mut solver = Solver::new(gpu, settings, &particles)?;
+    let mut measured = Vec::new();
+    for [time, _] in MARTIN_MOYCE {
+        solver.advance(time / (2.0 * GRAVITY_M_S2 / f64::from(a)).sqrt(), &Stop::default())?;
+        let mut x: Vec<f32> = solver.states()?.iter().map(|s| s.position_m.x).collect();
+        x.sort_unstable_by(f32::total_cmp);
+        // As far as the water is two spacings deep, over the length of a kernel: on this slippery floor a row
+        // of particles slides ahead, which a floor that is wetted holds back.
+        let layer = 4 * THICK as usize;
+        let front = (layer..x.len()).rev().find(|&k| x[k] - x[k - layer] < 2.0 * D_M).map_or(0.0, |k| x[k] + 0.5 * D_M);
+        measured.push([time, f64::from(front / a)]);
+    }
+    let plot = Plot {
+        caption: "Front of a column of water, twice as high as wide, that collapses on a dry floor".to_owned(),
+        x: "t sqrt(2 g / a)",
+        y: "front / a",
+        expected: MARTIN_MOYCE.to_vec(),
+        measured: measured.clone(),
+    };
+    // The experiment's clock starts some way into the motion: the course is ahead of it by a constant time.
+    let speed = |curve: &[[f64; 2]]| (curve[4][1] - curve[2][1]) / (curve[4][0] - curve[2][0]);
+    let source = "Martin and Moyce 1952, as digitised in PySPH";
+    let course = Check::new("V18 speed of a dam break", "front / a over t sqrt(2 g / a) from 2.0 to 3.3, measured", source, "");
+    let end = Check::new("V18 front of a dam break", "front / a at t sqrt(2 g / a) = 3.345, measured", source, "");
+    Ok(vec![course.compare(speed(&MARTIN_MOYCE), speed(&measured), 0.1), end.compare(MARTIN_MOYCE[4][1], measured[4][1], 0.1).with_plot(plot)])
+}
+
+/// Slope of a line through points, by least squares.
+fn slope(points: &[[f64; 2]]) -> f64 {
+    let n = points.len() as f64;
+    let (x, y) = (points.iter().map(|p| p[0]).sum::<f64>() / n, points.iter().map(|p| p[1]).sum::<f64>() / n);
+    points.iter().map(|p| (p[0] - x) * (p[1] - y)).sum::<f64>() / points.iter().map(|p| (p[0] - x).powi(2)).sum::<f64>()
+}
+
+/// What the forces between particles carry upwards, for each: sum of z F_z / (2 V). A solver's own pressures
+/// differ from it by how far its particles are from an even distribution.
+fn carried_pa(states: &[ParticleState], pressures: &[f32]) -> Vec<f64> {
+    // V_j r |W'| of the cubic spline of a cell's support, for particles of a spacing's volume.
+    let carried = |q: f64| q * if q < 0.5 { 12.0 * q - 18.0 * q * q } else { 6.0 * (1.0 - q).powi(2) } / std::f64::consts::PI;
+    let of = |(i, p): (usize, &f32)| {
+        let pairs = states.iter().zip(pressures).filter_map(|(s, other)| {
+            let apart = (s.position_m - states[i].position_m).as_dvec3() / f64::from(2.0 * D_M);
+            let q = apart.length();
+            (q > 0.0 && q < 1.0).then(|| 0.5 * f64::from(p + other) * carried(q) * (apart.z / q).powi(2))
+        });
+        pairs.sum()
+    };
+    pressures.iter().enumerate().map(of).collect()
+}
+
+/// V19: a pool at rest, its pressure over depth, its volume and what motion is left.
+pub(super) fn hydrostatic(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let counts = [8, 8, 16];
+    let particles = liquid(Vec3::ZERO, counts, 1e-3, 0.0);
+    let mut settings = Settings::new(2.0 * D_M);
+    slippery_ground(&mut settings);
+    let [x, y, height] = counts.map(|c| c as f32 * D_M);
+    settings.colliders = [between(0.0, x, Vec3::X, 0.0), between(0.0, y, Vec3::Y, 0.0)].concat();
+    let mut solver = Solver::new(gpu, settings, &particles)?;
+    solver.advance(1.0, &Stop::default())?;
+    let (mut points, mut middle, mut energy, samples) = (Vec::new(), 0.0, 0.0, 50);
+    for k in 1..=samples {
+        solver.advance(1.0 + 0.02 * f64::from(k), &Stop::default())?;
+        let states = solver.states()?;
+        let pressures = carried_pa(&states, &solver.liquid_pressures_pa()?);
+        // Within the pool: two rows off the ground and below the surface.
+        let inside = states.iter().zip(&pressures).filter(|(s, _)| {
+            s.position_m.z > 2.0 * D_M
+                && s.position_m.z < height - 3.0 * D_M
+                && [(s.position_m.x, x), (s.position_m.y, y)].iter().all(|&(at, width)| at > 2.0 * D_M && at < width - 2.0 * D_M)
+        });
+        points.extend(inside.map(|(s, p)| [f64::from(s.position_m.z), *p]));
+        let share = 1.0 / (states.len() as f64 * f64::from(samples));
+        middle += states.iter().map(|s| f64::from(s.position_m.z)).sum::<f64>() * share;
+        energy += states.iter().map(|s| f64::from(s.velocity_m_s.length_squared())).sum::<f64>() * share;
+    }
+    let weight = Check::new("V19 pressure over depth", "dp/dz = -rho g", "hydrostatics", "Pa/m");
+    let volume = Check::new("V19 volume at rest", "mean height of the particles, as filled", "incompressibility", "m");
+    let rest = Check::new("V19 motion at rest", "v rms / sqrt(g H) goes to 0", "hydrostatics", "");
+    Ok(vec![
+        weight.compare(-1000.0 * GRAVITY_M_S2, slope(&points), 0.02),
+        volume.compare(0.5 * f64::from(height), middle, 0.02),
+        rest.compare(0.0, energy.sqrt() / (GRAVITY_M_S2 * f64::from(height)).sqrt(), 0.03),
+    ])
+}
+
+/// A box filled by a lattice that is turned against its walls: layers along them would slide more easily
+/// than a liquid.
+fn turned(counts: [u32; 3], viscosity_pa_s: f32) -> Particles {
+    let size = Vec3::from(counts.map(|c| c as f32)) * D_M;
+    let reach = size.length();
+    let side = (2.0 * reach / D_M) as u32;
+    let whole = liquid(Vec3::splat(-reach), [side; 3], viscosity_pa_s, 0.0);
+    let turn = Quat::from_euler(EulerRot::XYZ, 0.5, 0.7, 0.3);
+    let inside = |x: &Vec3| (*x - 0.25 * D_M).cmpge(Vec3::ZERO).all() && (*x + 0.25 * D_M).cmple(size).all();
+    let position_m: Vec<Vec3> = whole.position_m.iter().map(|x| turn * *x).filter(inside).collect();
+    let n = position_m.len();
+    Particles {
+        position_m,
+        velocity_m_s: vec![Vec3::ZERO; n],
+        volume_m3: vec![D_M.powi(3); n],
+        density_kg_m3: vec![1000.0; n],
+        young_pa: vec![1.0; n],
+        poisson: vec![0.0; n],
+        substance: vec![0; n],
+        object: vec![0; n],
+        ..whole
+    }
+}
+
+/// V20: a thick liquid that falls between two walls that hold it, until its profile stands.
+pub(super) fn poiseuille(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let counts = [16, 4, 24];
+    let particles = turned(counts, 50.0);
+    let width = counts[0] as f32 * D_M;
+    let mut settings = Settings::new(2.0 * D_M);
+    let slab = between(0.0, counts[1] as f32 * D_M, Vec3::Y, 0.0);
+    settings.colliders = [between(0.0, width, Vec3::X, 1.0), slab].concat();
+    let mut solver = Solver::new(gpu, settings, &particles)?;
+    let (w, nu) = (f64::from(width), 0.05);
+    // The slowest part of the start dies with exp(-pi^2 nu t / W^2): a ninetieth is left.
+    solver.advance(4.5 * w * w / (std::f64::consts::PI.powi(2) * nu), &Stop::default())?;
+    let states = solver.states()?;
+    let middle = states.iter().map(|s| s.position_m.z).sum::<f32>() / states.len() as f32;
+    let (mut measured, mut expected) = (Vec::new(), Vec::new());
+    for k in 0..counts[0] {
+        let strip: Vec<_> = states
+            .iter()
+            .filter(|s| (s.position_m.z - middle).abs() < 4.0 * D_M && (s.position_m.x / D_M) as u32 == k)
+            .map(|s| [f64::from(s.position_m.x), -f64::from(s.velocity_m_s.z)])
+            .collect();
+        if strip.is_empty() {
+            continue;
+        }
+        let n = strip.len() as f64;
+        let x = strip.iter().map(|p| p[0]).sum::<f64>() / n;
+        measured.push([x, strip.iter().map(|p| p[1]).sum::<f64>() / n]);
+        expected.push([x, GRAVITY_M_S2 / (2.0 * nu) * x * (w - x)]);
+    }
+    let flow = |curve: &[[f64; 2]]| curve.iter().map(|p| p[1]).sum::<f64>() / curve.len() as f64;
+    let apart = measured.iter().zip(&expected).map(|(m, e)| (m[1] - e[1]).powi(2)).sum::<f64>() / measured.len() as f64;
+    let top = GRAVITY_M_S2 * w * w / (8.0 * nu);
+    let mean = Check::new("V20 Poiseuille, mean velocity", "g W^2 / (12 nu)", "plane Poiseuille flow", "m/s");
+    let shape = Check::new("V20 Poiseuille, profile", "rms distance from g x (W - x) / (2 nu), of its top", "plane Poiseuille flow", "");
+    let plot = Plot {
+        caption: "Velocity across a channel of 16 spacings in which a thick liquid falls".to_owned(),
+        x: "x, m",
+        y: "velocity, m/s",
+        expected: expected.clone(),
+        measured: measured.clone(),
+    };
+    Ok(vec![mean.compare(flow(&expected), flow(&measured), 0.05), shape.compare(0.0, apart.sqrt() / top, 0.05).with_plot(plot)])
+}
+
+/// V23: how deep a cube of half the liquid's density floats.
+pub(super) fn buoyancy(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    const POOL: [u32; 3] = [14, 14, 12];
+    const CUBE: f32 = 6.0 * D_M;
+    let [x, y, _] = POOL.map(|c| c as f32 * D_M);
+    let low = Vec3::new(4.0, 4.0, 9.0) * D_M;
+    let cube = block(low, Vec3::splat(CUBE), D_M, 2e4, 0.3);
+    let pool = liquid(Vec3::ZERO, POOL, 1e-3, 0.0);
+    let beside = |p: &Vec3| !(p.cmpgt(low).all() && p.cmplt(low + CUBE).all());
+    let mut position_m: Vec<Vec3> = pool.position_m.into_iter().filter(beside).collect();
+    let liquids = position_m.len();
+    position_m.extend(&cube.position_m);
+    let n = position_m.len();
+    let of = |liquid: f32, solid: f32| (0..n).map(|i| if i < liquids { liquid } else { solid }).collect::<Vec<f32>>();
+    let particles = Particles {
+        position_m,
+        velocity_m_s: vec![Vec3::ZERO; n],
+        volume_m3: vec![D_M.powi(3); n],
+        density_kg_m3: of(1000.0, 500.0),
+        young_pa: of(1.0, 2e4),
+        poisson: of(0.0, 0.3),
+        substance: (0..n).map(|i| u16::from(i >= liquids)).collect(),
+        object: (0..n).map(|i| u32::from(i >= liquids)).collect(),
+        substances: vec![pool.substances[0].clone(), Substance::default()],
+    };
+    let mut settings = Settings::new(2.0 * D_M);
+    slippery_ground(&mut settings);
+    settings.colliders = [between(0.0, x, Vec3::X, 0.0), between(0.0, y, Vec3::Y, 0.0)].concat();
+    let mut solver = Solver::new(gpu, settings, &particles)?;
+    let (mut under, samples) = (0.0, 20);
+    for k in 1..=40 {
+        solver.advance(0.03 * f64::from(k), &Stop::default())?;
+        let states = solver.states()?;
+        let middle = states[liquids..].iter().map(|s| s.position_m.z).sum::<f32>() / (n - liquids) as f32;
+        let bottom = middle - 0.5 * CUBE;
+        // Where the surface stands: the mean height of a flat pool that the cube reaches into.
+        let mean = states[..liquids].iter().map(|s| s.position_m.z).sum::<f32>() / liquids as f32;
+        let narrow = CUBE * CUBE / (x * y - CUBE * CUBE);
+        let level = mean + (mean * mean + narrow * bottom * (2.0 * mean - bottom)).sqrt();
+        under += if k > 40 - samples { f64::from((level - bottom) / CUBE) / f64::from(samples) } else { 0.0 };
+    }
+    let check = Check::new("V23 floating cube", "submerged share = density over the liquid's", "Archimedes", "");
+    Ok(vec![check.compare(0.5, under, 0.05)])
+}
