@@ -4,7 +4,7 @@
 
 use phystalk::gpu::DeviceRequest;
 use phystalk::scene::{self, Gaussians};
-use phystalk::spec::{Auto, Material, Part, Region, Spec, presets};
+use phystalk::spec::{Auto, Event, Material, Part, Region, Spec, presets};
 use phystalk::stages::{Engine, ObjectMetrics, Report, RunOptions};
 use phystalk::store::Store;
 use phystalk::{Frame, Progress, Sink, Stop};
@@ -98,4 +98,25 @@ fn parts_of_one_body_are_of_their_own_stuff() {
     assert!((heavier - (0.6 + 0.4 * 1600.0 / 930.0)).abs() < 0.08, "{heavier} times as heavy");
     let ((stood, _), (sank, wider)) = (fate(&whole.metrics.objects["column"]), fate(&parted.metrics.objects["column"]));
     assert!(stood.abs() < 0.01 && sank > 0.015 && wider > 1.02, "stood {stood}, sank {sank}, {wider} times as wide");
+}
+
+#[test]
+fn a_change_of_material_in_time_changes_nothing_before_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut still = spec(folder.path());
+    still.objects[0].material = preset("rubber");
+    still.time.duration_s = Auto::Value(0.5);
+    let mut falls = still.clone();
+    falls.events.push(Event { material: Some(preset("sand")), ..Event::at("crumble", "column", 0.3) });
+    falls.events.push(Event { weaken: Some(0.5), ..Event::at("weaker", "column", 0.4) });
+    let (before, resumed) = (run(&still, folder.path()), run(&falls, folder.path()));
+    assert_eq!(resumed.plan.stages[3].from_s, Some(0.25), "what is before the event is in the store");
+    let other = tempfile::tempdir().unwrap();
+    std::fs::copy(folder.path().join("column.ply"), other.path().join("column.ply")).unwrap();
+    let whole = run(&falls, other.path());
+    let column = |report: &Report| report.metrics.objects["column"].clone();
+    assert_eq!(column(&whole).com_m, column(&resumed).com_m, "a run that goes on ends in the same bits");
+    assert_eq!(column(&whole).com_m[..=6], column(&before).com_m[..=6], "0.3 s of both agree");
+    let (sank, _) = fate(&column(&whole));
+    assert!(sank > 0.005, "it sank {sank} m");
 }

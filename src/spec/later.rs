@@ -34,13 +34,7 @@ pub fn material(material: &Material) -> Option<(&'static str, &'static str)> {
 }
 
 /// Effects of events that are to come.
-const EFFECTS: &[(&str, &str)] = &[
-    ("material", "a change of material at an instant"),
-    ("weaken", "weakening"),
-    ("freeze", "freezing"),
-    ("release", "releasing"),
-    ("when", "events that wait for a condition"),
-];
+const EFFECTS: &[(&str, &str)] = &[("freeze", "freezing"), ("when", "events that wait for a condition")];
 
 /// What an event asks for that is to come, with its key.
 pub(super) fn event(event: &Event) -> Option<(&'static str, &'static str)> {

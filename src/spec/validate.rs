@@ -118,7 +118,7 @@ fn event(spec: &Spec, event: &Event, place: &str) -> Result<(), SpecError> {
         [first, second, ..] => return refuse(format!("{first} and {second} at once"), "one effect for each event; two events may have one time"),
     }
     if let Some((key, what)) = later::event(event) {
-        return Err(later::error(&format!("{place}.{key}"), what, "at_s with push_m_s or velocity_m_s"));
+        return Err(later::error(&format!("{place}.{key}"), what, "at_s with push_m_s, velocity_m_s, material, weaken or release"));
     }
     if let Some(changed) = &event.material {
         material(changed, place)?;

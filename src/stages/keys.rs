@@ -2,7 +2,7 @@
 //! here may change what a stage makes.
 
 use crate::gpu::Gpu;
-use crate::spec::{Event, Force, Material, Muscle, Object, Pin, Region, Spec, Until};
+use crate::spec::{Event, Force, Object, Pin, Spec, Until};
 use crate::world::Resolved;
 use crate::{proxy, render, skin, solver};
 use serde::Serialize;
@@ -54,8 +54,7 @@ fn device(gpu: &Gpu) -> serde_json::Value {
 
 /// What a prestress depends on: the solid, what it is made of, what it stands on, and gravity.
 pub(super) fn prestress(spec: &Spec, keys: &StillKeys, resolved: &Resolved, gpu: &Gpu) -> String {
-    // Of muscles only how hard they pull at the start.
-    let bodies: Vec<_> = spec.objects.iter().map(|o| (pieces(o, 0.0), o.rest)).collect();
+    let bodies: Vec<_> = spec.objects.iter().map(|o| (&o.material, &o.parts, o.rest)).collect();
     let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s <= 0.0).map(|p| (&p.object, &p.region)).collect();
     hash(
         "prestress",
@@ -68,27 +67,13 @@ pub(super) fn prestress(spec: &Spec, keys: &StillKeys, resolved: &Resolved, gpu:
 /// An event at exactly `to_s` is later: it takes effect at that boundary, after the state there was kept.
 pub(super) fn motion(spec: &Spec, prestress: &str, frames: std::ops::RangeInclusive<u32>, to_s: f64) -> String {
     let starts: Vec<_> = spec.objects.iter().map(start).collect();
-    let muscles: Vec<_> = spec.objects.iter().flat_map(|o| pieces(o, to_s)).filter(|(_, m)| matches!(m, Material::Muscle(_))).collect();
     // What waits for an impact may happen at any time, as far as a key can tell.
     let mut events: Vec<&Event> = spec.events.iter().filter(|e| e.at_s.is_none_or(|at_s| at_s < to_s)).collect();
     events.sort_by(|a, b| a.at_s.unwrap_or(f64::INFINITY).total_cmp(&b.at_s.unwrap_or(f64::INFINITY)));
     let events: Vec<_> = events.into_iter().map(|e| Event { name: String::new(), ..e.clone() }).collect();
     let forces: Vec<_> = spec.forces.iter().filter(|f| f.from_s < to_s).map(|f| force_until(f, to_s)).collect();
     let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s < to_s).map(|p| pin_until(p, to_s)).collect();
-    hash(
-        "motion",
-        &json!([SEGMENT_VERSION, prestress, spec.seed, spec.time.fps, starts, muscles, events, forces, pins, frames.start(), frames.end()]),
-    )
-}
-
-/// Regions and materials of an object, of muscles what is known of their activation at a time.
-fn pieces(object: &Object, until_s: f64) -> Vec<(Option<(&str, &Region)>, Material)> {
-    let parts = object.parts.iter().map(|part| (Some((part.name.as_str(), &part.region)), &part.material));
-    let known = |material: &Material| match material {
-        Material::Muscle(muscle) => Material::Muscle(Muscle { activation: muscle.activation.until(until_s), ..muscle.clone() }),
-        other => other.clone(),
-    };
-    std::iter::once((None, &object.material)).chain(parts).map(|(part, material)| (part, known(material))).collect()
+    hash("motion", &json!([SEGMENT_VERSION, prestress, spec.seed, spec.time.fps, starts, events, forces, pins, frames.start(), frames.end()]))
 }
 
 fn start(object: &Object) -> serde_json::Value {

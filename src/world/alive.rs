@@ -2,25 +2,39 @@
 
 use super::bodies::Matter;
 use super::settings::settings;
+use super::stuff::Stuff;
 use crate::gpu::{Gpu, Recording};
-use crate::solver::{Advance, Placement, Solver, SolverError};
+use crate::solver::{Advance, Moduli, Placement, Solver, SolverError};
 use crate::spec::{Event, Rest, Spec};
 use crate::{Stop, solver};
 use glam::{EulerRot, Quat, Vec3};
 
 use super::Resolved;
 
-/// A change at an instant: a push or a new velocity of one object.
+/// A change of one object at an instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedEvent {
     /// When.
     pub at_s: f64,
     /// Index of the object.
     pub object: u32,
-    /// Added to the velocity.
-    pub push_m_s: Option<Vec3>,
-    /// Replaces the velocity, before the push.
-    pub velocity_m_s: Option<Vec3>,
+    /// Its piece, where only one changes: 0 is the object's own material, 1 its first part's.
+    pub piece: Option<u16>,
+    /// What happens.
+    pub effect: Effect,
+}
+
+/// What an event does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Effect {
+    /// Adds to the velocity.
+    Push(Vec3),
+    /// Replaces the velocity.
+    Velocity(Vec3),
+    /// Makes it of other stuff; mass, place and speed stay.
+    Become(Stuff),
+    /// Multiplies moduli, yield stress and cohesion.
+    Weaken(f64),
 }
 
 /// A scene in motion.
@@ -29,6 +43,12 @@ pub struct World {
     gpu: Gpu,
     solver: Solver,
     events: Vec<TimedEvent>,
+    /// Piece of its object that each particle belongs to, and the particles of each object.
+    piece: Vec<u16>,
+    ranges: Vec<std::ops::Range<usize>>,
+    /// What each piece of each object is now, and was at the start.
+    stuffs: Vec<Vec<Stuff>>,
+    first_stuffs: Vec<Vec<Stuff>>,
     fps: u32,
     frame: u32,
 }
@@ -49,9 +69,12 @@ impl World {
     pub fn new(gpu: &Gpu, spec: &Spec, matter: &Matter, resolved: &Resolved) -> Result<World, SolverError> {
         let solver = Solver::new(gpu, settings(spec, matter, resolved), &matter.particles)?;
         let index_of = |name: &str| spec.objects.iter().position(|o| o.name == name);
-        let mut events: Vec<TimedEvent> = spec.events.iter().filter_map(|e| timed(e, index_of(&e.object)? as u32)).collect();
+        let numbered = spec.events.iter().zip(&matter.changes);
+        let mut events: Vec<TimedEvent> = numbered.filter_map(|(e, change)| timed(e, change.as_ref(), index_of(&e.object)?, spec)).collect();
         events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
-        Ok(World { gpu: gpu.clone(), solver, events, fps: spec.time.fps, frame: 0 })
+        let (piece, ranges) = (matter.piece.clone(), matter.bodies.ranges.clone());
+        let stuffs = matter.stuffs.clone();
+        Ok(World { gpu: gpu.clone(), solver, events, piece, ranges, first_stuffs: stuffs.clone(), stuffs, fps: spec.time.fps, frame: 0 })
     }
 
     /// Solves the prestress of every object that stands as captured.
@@ -91,7 +114,7 @@ impl World {
             if event.at_s > from_s && !self.advance(event.at_s, stop, &mut advance)? {
                 return Ok(Step { frame: self.frame, advance, stopped: true });
             }
-            self.apply(&event);
+            self.apply(&event)?;
         }
         if !self.advance(to_s, stop, &mut advance)? {
             return Ok(Step { frame: self.frame, advance, stopped: true });
@@ -109,13 +132,30 @@ impl World {
     }
 
     /// Applies an event now.
-    pub fn apply(&mut self, event: &TimedEvent) {
-        if let Some(velocity) = event.velocity_m_s {
-            self.solver.set_velocity(event.object, velocity);
+    pub fn apply(&mut self, event: &TimedEvent) -> Result<(), SolverError> {
+        match &event.effect {
+            Effect::Push(push) => self.solver.kick(event.object, *push),
+            Effect::Velocity(velocity) => self.solver.set_velocity(event.object, *velocity),
+            Effect::Become(stuff) => {
+                let moduli = Moduli::Young { young_pa: stuff.young_pa as f32, poisson: stuff.poisson as f32 };
+                let only = event.piece.map(|piece| self.particles_of(event.object, piece));
+                self.solver.change_material(event.object, only.as_deref(), Some(&stuff.substance), moduli)?;
+            }
+            Effect::Weaken(share) => {
+                for piece in pieces(event, &self.stuffs) {
+                    let only = self.particles_of(event.object, piece);
+                    let weaker = self.stuffs[event.object as usize][usize::from(piece)].weakened(*share);
+                    self.solver.change_material(event.object, Some(&only), Some(&weaker.substance), Moduli::Scaled(*share as f32))?;
+                }
+            }
         }
-        if let Some(push) = event.push_m_s {
-            self.solver.kick(event.object, push);
-        }
+        note(event, &mut self.stuffs);
+        Ok(())
+    }
+
+    /// Indices of the particles of one piece of an object.
+    fn particles_of(&self, object: u32, piece: u16) -> Vec<u32> {
+        self.ranges[object as usize].clone().filter(|&i| self.piece[i] == piece).map(|i| i as u32).collect()
     }
 
     /// Writes the frame's motion and velocities, which [`World::motion`] and [`World::velocity`] then hold.
@@ -144,6 +184,10 @@ impl World {
     pub fn restore(&mut self, frame: u32, bytes: &[u8]) -> Result<(), SolverError> {
         self.solver.restore(bytes)?;
         self.frame = frame;
+        self.stuffs = self.first_stuffs.clone();
+        // What happens at the frame itself is still to come.
+        let until_s = self.time_s(frame);
+        self.events.iter().filter(|event| event.at_s < until_s).for_each(|event| note(event, &mut self.stuffs));
         Ok(())
     }
 
@@ -152,8 +196,33 @@ impl World {
     }
 }
 
-fn timed(event: &Event, object: u32) -> Option<TimedEvent> {
-    Some(TimedEvent { at_s: event.at_s?, object, push_m_s: event.push_m_s.map(vec3), velocity_m_s: event.velocity_m_s.map(vec3) })
+/// What an event does in a world; none for what a pin does or what does not have a time.
+fn timed(event: &Event, change: Option<&Stuff>, object: usize, spec: &Spec) -> Option<TimedEvent> {
+    let effect = match event {
+        Event { push_m_s: Some(push), .. } => Effect::Push(vec3(*push)),
+        Event { velocity_m_s: Some(velocity), .. } => Effect::Velocity(vec3(*velocity)),
+        Event { weaken: Some(share), .. } => Effect::Weaken(*share),
+        _ => Effect::Become(change?.clone()),
+    };
+    let part = event.part.as_ref().and_then(|name| spec.objects[object].parts.iter().position(|part| part.name == *name));
+    Some(TimedEvent { at_s: event.at_s?, object: object as u32, piece: part.map(|index| index as u16 + 1), effect })
+}
+
+/// The pieces that an event is about.
+fn pieces(event: &TimedEvent, stuffs: &[Vec<Stuff>]) -> Vec<u16> {
+    event.piece.map_or_else(|| (0..stuffs[event.object as usize].len() as u16).collect(), |piece| vec![piece])
+}
+
+/// Keeps in mind what an event makes of its pieces.
+fn note(event: &TimedEvent, stuffs: &mut [Vec<Stuff>]) {
+    for piece in pieces(event, stuffs) {
+        let stuff = &mut stuffs[event.object as usize][usize::from(piece)];
+        match &event.effect {
+            Effect::Become(next) => *stuff = next.clone(),
+            Effect::Weaken(share) => *stuff = stuff.weakened(*share),
+            Effect::Push(_) | Effect::Velocity(_) => {}
+        }
+    }
 }
 
 fn vec3(value: [f64; 3]) -> Vec3 {

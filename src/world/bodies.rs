@@ -18,6 +18,8 @@ pub struct Matter {
     pub bodies: Bodies,
     /// Piece of its object that each particle belongs to: 0 is the object's own material, 1 its first part's.
     pub piece: Vec<u16>,
+    /// What each piece of each object is at the start.
+    pub stuffs: Vec<Vec<Stuff>>,
     /// Young's moduli that the spec left to the program, by path.
     pub young_auto: Vec<(String, f64)>,
     /// What each event of the spec makes of its object, in the spec's order; none where it changes no material.
@@ -46,6 +48,7 @@ pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Result<Matt
             ground_m: prepared.ground_m,
         },
         piece: Vec::new(),
+        stuffs: Vec::new(),
         young_auto: Vec::new(),
         changes: vec![None; spec.events.len()],
         centre_m: Vec::new(),
@@ -133,6 +136,7 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     matter.bodies.mass_kg.extend(mass);
     matter.bodies.volume_m3.extend(&solid.volume_m3);
     matter.piece.extend(piece);
+    matter.stuffs.push(stuffs);
     matter.centre_m.push((moment / total.max(f64::MIN_POSITIVE)).as_vec3());
     matter.fill_ratio.push(f64::from(solid.fill_ratio));
     matter.gaussians.push(prepared.members(index as u32, true).len());

@@ -14,7 +14,7 @@ mod resolve;
 mod settings;
 mod stuff;
 
-pub use alive::{Step, TimedEvent, World};
+pub use alive::{Effect, Step, TimedEvent, World};
 pub use facts::{Facts, ObjectFacts};
 pub use figure::Figure;
 pub use prepared::{Prepared, support_below};

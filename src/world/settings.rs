@@ -4,7 +4,7 @@ use super::Resolved;
 use super::bodies::Matter;
 use super::region::bounds;
 use crate::solver::{Collider, Field, ObjectForce, PinRegion, Plane, Settings};
-use crate::spec::{BoxShape, ColliderShape, FieldFacts, Force, PlaneShape, Region, Spec, Until};
+use crate::spec::{BoxShape, ColliderShape, FieldFacts, Force, Pin, PlaneShape, Region, Spec, Until};
 use glam::{DVec3, Vec3};
 
 /// What surrounds the particles of a spec.
@@ -19,7 +19,7 @@ pub fn settings(spec: &Spec, matter: &Matter, resolved: &Resolved) -> Settings {
             .iter()
             .map(|c| Collider { shape: c.shape, friction: c.friction as f32, restitution: c.restitution as f32 })
             .collect(),
-        pins: spec.pins.iter().filter_map(|p| Some(pin(p, matter, object(&p.object)?))).collect(),
+        pins: spec.pins.iter().filter_map(|p| Some(pin(p, released_s(spec, p), matter, object(&p.object)?))).collect(),
         forces: spec
             .forces
             .iter()
@@ -51,8 +51,14 @@ fn end_s(until: Until) -> f64 {
     }
 }
 
+/// When an event first releases an object after a pin began.
+fn released_s(spec: &Spec, pin: &Pin) -> f64 {
+    let events = spec.events.iter().filter(|e| e.release && e.object == pin.object);
+    events.filter_map(|e| e.at_s).filter(|at_s| *at_s > pin.from_s).fold(f64::INFINITY, f64::min)
+}
+
 /// A region of an object as a shape within the object's captured bounds.
-fn pin(pin: &crate::spec::Pin, matter: &Matter, object: usize) -> PinRegion {
+fn pin(pin: &Pin, released_s: f64, matter: &Matter, object: usize) -> PinRegion {
     let (low, high) = bounds(&matter.particles.position_m[matter.bodies.ranges[object].clone()]);
     let level = |share: f64| f64::from(low.z) + share * f64::from(high.z - low.z);
     let slab = |from: f64, to: f64| {
@@ -69,5 +75,5 @@ fn pin(pin: &crate::spec::Pin, matter: &Matter, object: usize) -> PinRegion {
         Region::Sphere(shape) => ColliderShape::Sphere(shape),
         Region::HalfSpace(PlaneShape { point_m, normal }) => ColliderShape::Plane(PlaneShape { point_m, normal }),
     };
-    PinRegion { shape, low_m: low, high_m: high, from_s: pin.from_s, to_s: end_s(pin.to_s), path: pin.path.clone() }
+    PinRegion { shape, low_m: low, high_m: high, from_s: pin.from_s, to_s: end_s(pin.to_s).min(released_s), path: pin.path.clone() }
 }

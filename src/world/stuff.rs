@@ -58,6 +58,24 @@ impl Yardstick {
     }
 }
 
+impl Stuff {
+    /// The same with less strength: yield stress and cohesion times a share. Its moduli are the solver's to scale.
+    pub fn weakened(&self, share: f64) -> Stuff {
+        let times = |value: f32| (f64::from(value) * share) as f32;
+        let substance = match self.substance.clone() {
+            Substance::Plastic { yield_stress_pa, hardening_pa } => {
+                Substance::Plastic { yield_stress_pa: times(yield_stress_pa), hardening_pa: times(hardening_pa) }
+            }
+            Substance::Viscoplastic { yield_stress_pa, viscosity_pa_s } => {
+                Substance::Viscoplastic { yield_stress_pa: times(yield_stress_pa), viscosity_pa_s }
+            }
+            Substance::Sand { friction_angle_deg, cohesion_pa } => Substance::Sand { friction_angle_deg, cohesion_pa: times(cohesion_pa) },
+            other => other,
+        };
+        Stuff { substance, young_pa: self.young_pa * share, ..self.clone() }
+    }
+}
+
 fn substance(material: &Material) -> Result<Substance, SolverError> {
     match material {
         Material::Elastic(m) => Ok(Substance::Elastic(m.model)),

@@ -50,6 +50,10 @@ const EXAMPLES: &[(&str, &[&str])] = &[
         &[
             "make it of rubber",
             "turn the vase into jelly",
+            "turn the vase into sand",
+            "turn it into mud at 1 s",
+            "drop it from 1 m, when it hits the ground it turns to sand",
+            "the upper half is snow",
             "softer",
             "a bit stiffer",
             "three times heavier",
@@ -281,9 +285,9 @@ fn unbuilt_name(what: Unbuilt) -> &'static str {
     match what {
         Unbuilt::Liquid => "liquids",
         Unbuilt::Rigid => "rigid bodies",
-        Unbuilt::Plastic => "plastic materials",
-        Unbuilt::Viscoplastic => "viscoplastic materials",
-        Unbuilt::Grains => "sand and snow",
+        Unbuilt::Plastic => "other stuff that keeps dents",
+        Unbuilt::Viscoplastic => "other thick stuff",
+        Unbuilt::Grains => "other grains",
         Unbuilt::Gas => "gases",
         Unbuilt::Muscle => "things that move themselves",
         Unbuilt::Heat => "heat",

@@ -63,17 +63,6 @@ impl Activation {
             None => points.last().map_or(0.0, |[_, value]| *value),
         }
     }
-
-    /// What of it is known at a time: the points until then and the one that the line there leads to.
-    pub fn until(&self, to_s: f64) -> Activation {
-        match self {
-            Activation::Steady(_) | Activation::Wave(_) => self.clone(),
-            Activation::Curve(points) => {
-                let known = points.iter().position(|[t, _]| *t >= to_s).map_or(points.len(), |next| next + 1);
-                Activation::Curve(points[..known].to_vec())
-            }
-        }
-    }
 }
 
 #[cfg(test)]
@@ -81,15 +70,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_curve_is_straight_between_its_points_and_known_as_far_as_it_matters() {
+    fn a_curve_is_straight_between_its_points_and_a_wave_swings() {
         let curve = Activation::Curve(vec![[0.5, 0.0], [1.0, 1.0], [2.0, 0.5]]);
         for (time_s, value) in [(0.0, 0.0), (0.5, 0.0), (0.75, 0.5), (1.0, 1.0), (1.5, 0.75), (9.0, 0.5)] {
             assert_eq!(curve.at(time_s), value, "at {time_s}");
         }
         let wave = Activation::Wave(Wave { least: 0.2, most: 1.0, period_s: 2.0, phase: 0.5 });
         assert!((wave.at(0.0) - 1.0).abs() < 1e-12 && (wave.at(1.0) - 0.2).abs() < 1e-12 && (wave.at(0.5) - 0.6).abs() < 1e-12);
-        let early = curve.until(0.8);
-        assert_eq!(early, Activation::Curve(vec![[0.5, 0.0], [1.0, 1.0]]));
-        assert!((0..=80).map(|i| f64::from(i) * 0.01).all(|t| early.at(t) == curve.at(t)));
     }
 }

@@ -6,7 +6,7 @@ use super::super::numbers::Dimension;
 use super::super::say;
 use super::super::sense::{Preposition, Property, Sense, Verb};
 use glam::DVec3;
-use phystalk::spec::{Auto, Material, presets};
+use phystalk::spec::{Auto, Event, Material, Part, Region, presets};
 
 /// Stiffness taken for "softer" where the automatic one is not known: before the first run of a scene.
 pub const YOUNG_BEFORE_RUN_PA: f64 = 2e5;
@@ -249,18 +249,68 @@ pub fn material(name: &'static str, clause: &mut Clause, draft: &mut Draft) -> R
     let times = clause.has(|s| matches!(s, Sense::Factor(_)));
     let only = if like { clause.take_scale(&[Property::Stiffness, Property::Hardness, Property::Density]) } else { None };
     let preset = presets::material(name).map(|preset| preset.material.clone());
-    for object in draft.subjects(clause)? {
+    let part = super::hold::take_part(clause).map(super::hold::region_of);
+    let objects = draft.subjects(clause)?;
+    // Beside a motion the time is the motion's: "push the jelly vase at 1 s".
+    let moves = clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(verb) if !is_light(verb, clause)));
+    let at_s = if moves || only.is_some() { None } else { super::motion::moment(clause, draft, objects[0])? };
+    for object in objects {
         let line = match (only, &preset) {
             (Some(scale), Some(preset)) => resemble(draft, object, name, preset, scale, times)?,
-            (_, Some(preset)) => {
-                *draft.material(object) = preset.clone();
-                format!("{} is made of {name}: {}", draft.name(object), say::material(preset))
+            // "The elastic vase jumps" says what it is.
+            (_, None) if part.is_none() && at_s.is_none() && draft.material(object).kind() == "elastic" => {
+                format!("{} is elastic", draft.name(object))
             }
-            (_, None) => format!("{} is elastic", draft.name(object)),
+            (_, preset) => become_stuff(draft, object, part, at_s, (name, &preset.clone().unwrap_or_default())),
         };
         draft.gloss.push(line);
     }
     Ok(())
+}
+
+/// An object, or a part of its height, is of some stuff, from the start or from a time on.
+fn become_stuff(
+    draft: &mut Draft,
+    object: usize,
+    part: Option<(&'static str, Region, &'static str)>,
+    at_s: Option<f64>,
+    (name, stuff): (&str, &Material),
+) -> String {
+    let owner = draft.name(object);
+    let who = part.map_or(owner.clone(), |(_, _, said)| format!("{said} of {owner}"));
+    let part = part.map(|(stem, region, _)| part_of(draft, object, stem, region));
+    let described = format!("{name}: {}", say::material(stuff));
+    let Some(at_s) = at_s else {
+        match part {
+            Some(index) => draft.object(object).parts[index].material = stuff.clone(),
+            None => *draft.material(object) = stuff.clone(),
+        }
+        return format!("{who} is made of {described}");
+    };
+    let part = part.map(|index| draft.spec.objects[object].parts[index].name.clone());
+    let at_s = say::tidy(at_s);
+    let same = |e: &&mut Event| e.object == owner && e.part == part && e.at_s == Some(at_s) && e.material.is_some();
+    match draft.spec.events.iter_mut().find(same) {
+        Some(event) => event.material = Some(stuff.clone()),
+        None => {
+            let event = draft.free_name("change", |spec, name| spec.events.iter().any(|e| e.name == name));
+            draft.spec.events.push(Event { part, material: Some(stuff.clone()), ..Event::at(&event, &owner, at_s) });
+        }
+    }
+    format!("{who} turns into {described}, at {}", say::seconds(at_s))
+}
+
+/// The part of an object that has a region, made of the object's own stuff where there was none.
+fn part_of(draft: &mut Draft, object: usize, stem: &str, region: Region) -> usize {
+    let thing = draft.object(object);
+    if let Some(index) = thing.parts.iter().position(|part| part.region == region) {
+        return index;
+    }
+    let taken = |name: &str| thing.parts.iter().any(|part| part.name == name);
+    let name = (1..).map(|n| if n == 1 { stem.to_owned() } else { format!("{stem}{n}") }).find(|name| !taken(name)).unwrap_or_default();
+    let material = thing.material.clone();
+    thing.parts.push(Part { name, region, material });
+    thing.parts.len() - 1
 }
 
 /// One property of a preset: "as soft as jelly", "twice the density of foam".

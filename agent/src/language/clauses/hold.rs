@@ -20,15 +20,7 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let from_s = span.map(|s| s.0).or_else(|| clause.take_at()).unwrap_or(0.0);
     let until = span.map(|s| s.1).or_else(|| clause.take_until()).or_else(|| clause.take_for().map(|f| from_s + f));
     let to_s = until.map_or(Until::End, |to| Until::Time(say::tidy(to)));
-    let (stem, region, said) = match part {
-        Some(Part::Base) => ("base", Region::Below(0.05), "the lowest twentieth"),
-        Some(Part::Top) => ("top", Region::Above(0.95), "the highest twentieth"),
-        Some(Part::LowerHalf) => ("lower-half", Region::Below(0.5), "the lower half"),
-        Some(Part::UpperHalf) => ("upper-half", Region::Above(0.5), "the upper half"),
-        Some(Part::LowerThird) => ("lower-third", Region::Below(0.333333), "the lowest third"),
-        Some(Part::UpperThird) => ("upper-third", Region::Above(0.666667), "the highest third"),
-        None => ("hold", Region::Above(0.0), "all"),
-    };
+    let (stem, region, said) = part.map_or(("hold", Region::Above(0.0), "all"), region_of);
     for &object in &objects {
         let object = draft.name(object);
         let same = draft.spec.pins.iter_mut().find(|p| p.object == object && p.region == region);
@@ -44,6 +36,18 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
         draft.gloss.push(format!("{said} of {object} is held from {} {until}", say::seconds(from_s)));
     }
     Ok(())
+}
+
+/// A part of an object's height: what it is called in a spec, where it is, and how it is said.
+pub fn region_of(part: Part) -> (&'static str, Region, &'static str) {
+    match part {
+        Part::Base => ("base", Region::Below(0.05), "the lowest twentieth"),
+        Part::Top => ("top", Region::Above(0.95), "the highest twentieth"),
+        Part::LowerHalf => ("lower-half", Region::Below(0.5), "the lower half"),
+        Part::UpperHalf => ("upper-half", Region::Above(0.5), "the upper half"),
+        Part::LowerThird => ("lower-third", Region::Below(0.333333), "the lowest third"),
+        Part::UpperThird => ("upper-third", Region::Above(0.666667), "the highest third"),
+    }
 }
 
 /// "let go at 1 s", "let go".
@@ -72,7 +76,7 @@ pub fn release(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn take_part(clause: &mut Clause) -> Option<Part> {
+pub fn take_part(clause: &mut Clause) -> Option<Part> {
     clause.take(|s| match s {
         Sense::Part(part) => Some(*part),
         _ => None,

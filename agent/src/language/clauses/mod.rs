@@ -143,9 +143,9 @@ pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
     match what {
         Unbuilt::Liquid => format!("{}liquids are not built yet; {elastic}", is("a liquid")),
         Unbuilt::Rigid => format!("{}rigid bodies are not built yet; {elastic}, and \"much stiffer\" comes near", is("rigid")),
-        Unbuilt::Plastic => format!("{}plastic materials are not built yet; {elastic}", is("plastic")),
-        Unbuilt::Viscoplastic => format!("{}viscoplastic materials are not built yet; {elastic}", is("viscoplastic")),
-        Unbuilt::Grains => format!("{words} is granular: sand and snow are not built yet; {elastic}"),
+        Unbuilt::Plastic => format!("{words} is not built yet; what keeps dents is: clay, dough"),
+        Unbuilt::Viscoplastic => format!("{words} is not built yet; thick stuff is: mud, jam"),
+        Unbuilt::Grains => format!("{words} is not built yet; grains are: sand, dry soil, snow"),
         Unbuilt::Gas => format!("{}gases are not built; {elastic}", is("a gas")),
         Unbuilt::Muscle => format!("{words}: things that move themselves are not built yet; jumps, pushes, throws and spins are"),
         Unbuilt::Heat => format!("{words}: heat is not built yet; {elastic}"),

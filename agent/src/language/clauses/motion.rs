@@ -41,7 +41,7 @@ pub fn understand(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<
 }
 
 /// When: "at 0.5 s", "in mid-air", "when it lands". The latter two are predicted from the jump that the spec holds.
-fn moment(clause: &mut Clause, draft: &Draft, object: usize) -> Result<Option<f64>, Refusal> {
+pub fn moment(clause: &mut Clause, draft: &Draft, object: usize) -> Result<Option<f64>, Refusal> {
     let moment = clause.take(|s| match s {
         Sense::Moment(moment) => Some(*moment),
         _ => None,
