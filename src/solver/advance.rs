@@ -1,5 +1,6 @@
 //! Going on in time: segments of whole substeps, watched, rolled back and run again.
 
+use super::budget;
 use super::constants::{FIXED_BITS_RETREAT, SLACK_CELLS};
 use super::core::Solver;
 use super::fields::{Fields, When};
@@ -7,7 +8,7 @@ use super::grid::GridBuffers;
 use super::liquid::LiquidBound;
 use super::obstacles;
 use super::sph::SphBound;
-use super::types::{Advance, Softened, SolverError};
+use super::types::{Advance, SolverError};
 use super::watch::{Control, Watch};
 use crate::Stop;
 use crate::gpu::{Readback, Recording, Tier};
@@ -65,6 +66,8 @@ const SAME_TIME_S: f64 = 1e-9;
 const HALVINGS: u32 = 3;
 /// A material is softened this often before the run is given up.
 const SOFTENINGS: u32 = 3;
+/// Cells that anything may travel in one segment.
+const SEGMENT_CELLS: f64 = 32.0;
 /// Sorting is amortised over at most so many substeps; runs of equal cells break up meanwhile.
 const SORT_EVERY: u32 = 4;
 /// Particle-substeps of one submit: about 0.1 s on two CPU cores, so that a stop is heard.
@@ -86,7 +89,7 @@ impl Solver {
     /// Goes on exactly to `to_s`. The state is then at the end of the last substep before it; where it
     /// was stopped, or fails, at the last frame or cut before that.
     pub fn advance(&mut self, to_s: f64, stop: &Stop) -> Result<Advance, SolverError> {
-        let mut report = Advance { dt_min_s: f64::INFINITY, ..Default::default() };
+        let mut report = Advance { dt_min_s: f64::INFINITY, softened: std::mem::take(&mut self.softened), ..Default::default() };
         while self.time_s < to_s - SAME_TIME_S && !report.stopped {
             let scales = (self.params.mass_units, self.params.momentum_bits);
             let result = self.segment(to_s, stop, &mut report);
@@ -114,10 +117,24 @@ impl Solver {
             let acceleration_m_s2 = self.set_surroundings();
             let pins_m_s = self.pin_speed_m_s();
             (seen.driven_m_s, seen.drift_m_s) = (seen.driven_m_s.max(pins_m_s), seen.drift_m_s.max(pins_m_s));
+            let mut plan = self.plan(&seen, until_s, frame_end_s, acceleration_m_s2, halvings);
+            if f64::from(plan.substeps) > budget::SUBSTEPS_MOST {
+                return Err(SolverError::TooFast {
+                    time_s: self.time_s,
+                    speed_m_s: seen.speed_m_s,
+                    cell_m: self.settings.cell_m,
+                    substeps: plan.substeps,
+                });
+            }
+            // What is fast takes its frame in several segments, so that the grid need not hold all of its way.
+            let speed_m_s = f64::from(seen.speed_m_s + seen.drift_m_s) + f64::from(acceleration_m_s2) * (until_s - self.time_s);
+            let at_once = SEGMENT_CELLS * f64::from(self.settings.cell_m) / (speed_m_s * f64::from(plan.dt_s)).max(1e-12);
+            if f64::from(plan.substeps) > at_once {
+                plan = Plan { substeps: (at_once as u32).max(1), last_dt_s: plan.dt_s, ..plan };
+                until_s = self.time_s + f64::from(plan.substeps) * f64::from(plan.dt_s);
+            }
             self.ask_fields_at(until_s);
-            let plan = self.plan(&seen, until_s, frame_end_s, acceleration_m_s2, halvings);
-            let span_s = (until_s - self.time_s) as f32;
-            let reach_m = (seen.speed_m_s + seen.drift_m_s + acceleration_m_s2 * span_s) * span_s;
+            let reach_m = (speed_m_s * (until_s - self.time_s)) as f32;
             let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + SLACK_CELLS + 3) * room;
             self.fit_window(seen.low, seen.high, margin)?;
             let (start, order) = (self.substep, self.current);
@@ -159,7 +176,8 @@ impl Solver {
                 halvings += 1;
             } else if softenings < SOFTENINGS {
                 softenings += 1;
-                self.soften(now.suspects, report)?;
+                self.soften(now.suspects, &reason)?;
+                report.softened.append(&mut self.softened);
                 self.backup();
                 seen = self.look()?;
             } else {
@@ -211,9 +229,12 @@ impl Solver {
         let cell_m = f64::from(self.settings.cell_m);
         let left_s = frame_end_s - self.time_s;
         let speed_m_s = f64::from(seen.speed_m_s + seen.driven_m_s) + f64::from(acceleration_m_s2) * left_s;
-        let limit_s = f64::from(self.settings.cfl) * cell_m / (f64::from(seen.wave_speed_m_s) + speed_m_s) / f64::from(1u32 << halvings);
+        let courant_m = f64::from(self.settings.cfl) * cell_m;
+        // Laws that stiffen as they go may ask for more than is carried; the watch sees what comes of it.
+        let wave_m_s = f64::from(seen.wave_speed_m_s).min(courant_m / budget::shortest_s(&self.settings));
+        let halved = f64::from(1u32 << halvings);
+        let limit_s = courant_m / (wave_m_s + speed_m_s) / halved;
         let limit_s = self.sph().map_or(limit_s, |sph| {
-            let halved = f64::from(1u32 << halvings);
             limit_s.min(sph.limit_s(0.5 * cell_m, f64::from(self.settings.cfl), speed_m_s, f64::from(acceleration_m_s2)) / halved)
         });
         let dt_s = left_s / (left_s / limit_s).ceil().max(1.0);
@@ -424,17 +445,12 @@ impl Solver {
         self.gpu.submit(&recording);
     }
 
-    /// Halves the modulus of the suspect objects, or of all where none stands out.
-    fn soften(&mut self, suspects: u32, report: &mut Advance) -> Result<(), SolverError> {
-        let softer = |object: u32| suspects == 0 || suspects >> (object & 31) & 1 != 0;
-        self.edit(|s| {
-            if softer(s.object()) {
-                s.mu_pa *= 0.5;
-                s.lambda_pa *= 0.5;
-            }
-        })?;
-        let time_s = self.time_s;
-        report.softened.extend((0..self.object_count).filter(|&o| softer(o)).map(|object| Softened { object, factor: 0.5, time_s }));
+    /// Halves the moduli of the suspect objects, or of all where none stands out.
+    fn soften(&mut self, suspects: u32, reason: &str) -> Result<(), SolverError> {
+        let mut states = self.states()?;
+        let suspect = |object: u32| suspects == 0 || suspects >> (object & 31) & 1 != 0;
+        self.softened.extend(budget::halve(&mut states, suspect, self.time_s, reason));
+        self.replace(states);
         Ok(())
     }
 }

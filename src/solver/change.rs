@@ -79,7 +79,7 @@ impl Solver {
         }
         self.gpu.upload(&self.unstressed, &unstressed);
         self.set_shown(&shown);
-        self.replace(&states);
+        self.replace(states);
         Ok(())
     }
 

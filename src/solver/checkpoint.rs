@@ -68,7 +68,11 @@ impl Solver {
         if let Some(row) = particles.iter().map(ParticleState::substance).find(|&row| row >= table.len()) {
             return Err(refuse(format!("a particle of substance {row} of {}", table.len())));
         }
-        self.replace(&particles);
+        self.replace(particles);
+        if header.time_s > 0.0 {
+            // Told when it happened, on the way here.
+            self.softened.clear();
+        }
         self.gpu.upload(&self.unstressed, &unstressed);
         let mut rest = &bytes[states + tail..];
         for kept in self.kept() {

@@ -23,6 +23,8 @@ pub const J_FLOOR: f32 = 0.05;
 pub const J_LEAST: f32 = 0.05;
 /// See [`J_LEAST`].
 pub const J_MOST: f32 = 20.0;
+/// Largest norm of F, sqrt(3) at rest: a stretch by seven, or by four every way.
+pub const F_MOST: f32 = 7.0;
 /// Steps of the gap in a contact mark.
 pub const GAP_STEPS: f32 = 1_048_576.0;
 /// In a contact mark: the particle slides without Coulomb friction.
@@ -155,6 +157,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("POLAR_STEPS", Constant::U32(POLAR_STEPS)),
         ("FLAT", Constant::F32(FLAT)),
         ("FLAT_STEPS", Constant::U32(FLAT_STEPS)),
+        ("F_MOST", Constant::F32(F_MOST)),
         ("J_FLOOR", Constant::F32(J_FLOOR)),
         ("J_LEAST", Constant::F32(J_LEAST)),
         ("J_MOST", Constant::F32(J_MOST)),

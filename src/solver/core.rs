@@ -1,5 +1,6 @@
 //! The solver itself: its particles, its surroundings, and what may be done to them between frames.
 
+use super::budget;
 use super::constants::{FIXED_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
 use super::fields::Fields;
 use super::grid::{GridBuffers, Window, allowed_blocks};
@@ -10,7 +11,7 @@ use super::obstacles::{self, PinRecord};
 use super::passes::Passes;
 use super::sph::Sph;
 use super::state::{self, ParticleState, StateBuffers};
-use super::types::{Particles, Placement, Settings, SolverError};
+use super::types::{Particles, Placement, Settings, Softened, SolverError};
 use super::watch::{Control, Watch};
 use crate::gpu::{Gpu, Recording};
 use bytemuck::{Pod, Zeroable};
@@ -88,6 +89,8 @@ pub struct Solver {
     pub(super) window: Option<Window>,
     /// What the watch saw at the present time; none where something changed since.
     pub(super) seen: Option<Watch>,
+    /// What had to be softened since the last report.
+    pub(super) softened: Vec<Softened>,
     pub(super) time_s: f64,
     pub(super) substep: u32,
 }
@@ -97,7 +100,8 @@ impl Solver {
     pub fn new(gpu: &Gpu, settings: Settings, particles: &Particles) -> Result<Solver, SolverError> {
         check(&settings)?;
         let colliders = obstacles::colliders(&settings);
-        let states = state::initial(particles, &colliders, settings.cell_m)?;
+        let mut states = state::initial(particles, &colliders, settings.cell_m)?;
+        let softened = budget::afford(&mut states, &settings, 0.0);
         let n = states.len();
         let heaviest_kg = states.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
         let params = Params {
@@ -140,6 +144,7 @@ impl Solver {
             grid: None,
             window: None,
             seen: None,
+            softened,
             time_s: 0.0,
             substep: 0,
             gpu: gpu.clone(),
@@ -242,14 +247,16 @@ impl Solver {
     pub(super) fn edit(&mut self, change: impl FnMut(&mut ParticleState)) -> Result<(), SolverError> {
         let mut states = self.states()?;
         states.iter_mut().for_each(change);
-        self.replace(&states);
+        self.replace(states);
         Ok(())
     }
 
-    pub(super) fn replace(&mut self, states: &[ParticleState]) {
-        self.scale_liquids(states);
-        self.buffers[self.current].upload(&self.gpu, states);
-        self.survey(states);
+    /// Writes all particles, in their original order; none stiffer than the time step affords.
+    pub(super) fn replace(&mut self, mut states: Vec<ParticleState>) {
+        self.softened.extend(budget::afford(&mut states, &self.settings, self.time_s));
+        self.scale_liquids(&states);
+        self.buffers[self.current].upload(&self.gpu, &states);
+        self.survey(&states);
         self.seen = None;
     }
 

@@ -11,6 +11,7 @@ mod passes;
 
 mod advance;
 mod bench;
+mod budget;
 mod change;
 mod checkpoint;
 mod constants;

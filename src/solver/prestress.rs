@@ -114,7 +114,7 @@ impl Solver {
         let carries = |s: &ParticleState| supported.contains(&s.object()) && self.laws.substances[s.substance()].can_stand();
         if !states.iter().any(carries) {
             // Heaps stand where they are, and carry nothing.
-            self.replace(&states);
+            self.replace(states);
             return Ok(report);
         }
         let kept = self.params;
@@ -131,7 +131,7 @@ impl Solver {
             }
         }
         self.gpu.upload(&self.unstressed, &unstressed);
-        self.replace(&states);
+        self.replace(states);
         if !report.converged && report.residual >= WORTH_SAYING {
             report.warnings.push(format!(
                 "the captured pose does not quite balance: {:.1} % of weight is left over after {} rounds, and it will settle a little",

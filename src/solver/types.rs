@@ -199,14 +199,18 @@ pub struct Placement {
 }
 
 /// An object that could only be kept stable with a smaller modulus.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Softened {
     /// Index of the object.
     pub object: u32,
-    /// Its Young's modulus was multiplied by this.
+    /// Its Young's modulus was multiplied by this, or by no less than this where parts differ.
     pub factor: f32,
+    /// The largest modulus that was given up then has this value now, pascals.
+    pub young_pa: f32,
     /// When.
     pub time_s: f64,
+    /// Why.
+    pub reason: String,
 }
 
 /// How an advance went.
@@ -271,6 +275,21 @@ pub enum SolverError {
         nodes: u64,
         /// Nodes allowed.
         allowed: u64,
+    },
+    /// More substeps than anyone waits for.
+    #[error(
+        "a frame at {time_s:.3} s would take {substeps} substeps: something moves at {speed_m_s:.1} m/s through cells of {cell_m:.1e} m; \
+         lower the speeds, use a smaller solver.cells_across or a higher time.fps"
+    )]
+    TooFast {
+        /// When.
+        time_s: f64,
+        /// Fastest particle.
+        speed_m_s: f32,
+        /// Cell size.
+        cell_m: f32,
+        /// Substeps needed.
+        substeps: u32,
     },
     /// Neither smaller substeps nor a softer material helped.
     #[error(

@@ -93,7 +93,7 @@ pub(super) struct Watch {
 }
 
 /// det F beyond these is no longer the material's own doing.
-const J_TRIP: (f32, f32) = (-1.0, 60.0);
+const J_TRIP: (f32, f32) = (-1.0, 70.0);
 /// Cells that a particle may move in one substep.
 const STEP_CELLS: f32 = 0.6;
 /// Cells that a wave may run in one substep: a law that stiffened meanwhile takes smaller ones.

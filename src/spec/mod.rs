@@ -19,6 +19,7 @@ pub mod limits;
 mod path;
 mod place;
 pub mod presets;
+pub mod random;
 mod read;
 mod reference;
 pub mod schema;

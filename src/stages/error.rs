@@ -54,6 +54,9 @@ pub enum EngineError {
     /// The motion could not be kept stable.
     #[error("{0}")]
     Unstable(String),
+    /// Too wide or too fast for the grid that the device holds.
+    #[error("{0}")]
+    TooLarge(String),
     /// The store failed.
     #[error(transparent)]
     Store(#[from] StoreError),
@@ -63,6 +66,7 @@ impl From<SolverError> for EngineError {
     fn from(error: SolverError) -> Self {
         match error {
             SolverError::Gpu(gpu) => EngineError::Gpu(gpu),
+            large @ (SolverError::TooWide { .. } | SolverError::TooFast { .. }) => EngineError::TooLarge(large.to_string()),
             other => EngineError::Unstable(other.to_string()),
         }
     }

@@ -8,6 +8,7 @@ mod delivery;
 mod derive;
 mod engine;
 mod error;
+pub mod fuzz;
 mod keys;
 mod look;
 mod metrics;

@@ -84,6 +84,9 @@ pub(super) fn run(
     let of_forces = summary::of_forces(&done.totals);
     of_forces.iter().for_each(|w| sink.warning(w));
     warnings.extend(of_forces);
+    // Whoever gave a stiffness hears what it was simulated with.
+    done.totals.softened.iter().for_each(|text| sink.warning(text));
+    warnings.extend(done.totals.softened.iter().cloned());
     let metrics = summary::metrics(spec, &ready, &matter, &done.rows, &done.totals, &seconds, engine.device()?);
     Ok(Report { plan, metrics, camera: ready.resolved.camera, stopped: done.stopped, warnings })
 }
@@ -319,7 +322,7 @@ impl<'a> Motion<'a> {
             let clock = Instant::now();
             if index > 0 {
                 let step = world.step_frame(stop)?;
-                step.advance.iter().for_each(|a| totals.add(&summary::totals(a)));
+                step.advance.iter().for_each(|a| totals.add(&summary::totals(a, spec)));
                 stopped = step.stopped;
             }
             if stopped {

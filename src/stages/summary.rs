@@ -13,7 +13,8 @@ use crate::world::measure::Row;
 use std::collections::BTreeMap;
 
 /// Sums of one advance.
-pub(super) fn totals(advance: &Advance) -> SolverTotals {
+pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
+    let name = |object: u32| spec.objects.get(object as usize).map_or("an object", |o| o.name.as_str());
     SolverTotals {
         substeps: advance.substeps,
         dt_min_s: if advance.substeps > 0 { advance.dt_min_s } else { 0.0 },
@@ -22,7 +23,16 @@ pub(super) fn totals(advance: &Advance) -> SolverTotals {
         softened: advance
             .softened
             .iter()
-            .map(|s| format!("object {}: young_pa times {} from {:.3} s, to stay stable", s.object, s.factor, s.time_s))
+            .map(|s| {
+                format!(
+                    "{}: simulated with at most {:.2e} Pa from {:.3} s on, {:.2e} of its stiffness: {}",
+                    name(s.object),
+                    s.young_pa,
+                    s.time_s,
+                    s.factor,
+                    s.reason
+                )
+            })
             .collect(),
         undefined: advance.undefined.iter().cloned().collect(),
         limited: advance.limited,

@@ -7,7 +7,7 @@ pub mod prestress;
 pub mod sort;
 pub mod sph;
 
-use super::constants::{GAP_STEPS, REST_CELLS_MAX, SLIPS, WALL_GRIP, WALL_SOON_S};
+use super::constants::{F_MOST, GAP_STEPS, REST_CELLS_MAX, SLIPS, WALL_GRIP, WALL_SOON_S};
 use super::core::Params;
 use super::obstacles::{ColliderRecord, PinRecord};
 use super::state::ParticleState;
@@ -210,7 +210,9 @@ pub fn g2p(states: &mut [ParticleState], grid: &Grid, around: &Surroundings, dt_
                 v -= normal * v.dot(normal).min(0.0);
             }
         }
-        let f = (DMat3::IDENTITY + gradient * f64::from(dt_s)) * s.f().as_dmat3();
+        let trial = (DMat3::IDENTITY + gradient * f64::from(dt_s)) * s.f().as_dmat3();
+        let size = trial.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
+        let f = trial * (f64::from(F_MOST) / size).min(1.0);
         let answer = around.respond(s, f, gradient, dt_s);
         let weight = f64::from(dt_next_s) * 4.0 * f64::from(params.per_m).powi(2) * f64::from(s.volume_m3);
         s.set_affine((gradient * f64::from(s.mass_kg) - answer.tau * weight).as_mat3());

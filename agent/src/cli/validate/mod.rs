@@ -11,7 +11,7 @@ use clap::Args;
 use phystalk::gpu::Gpu;
 use phystalk::skin;
 use phystalk::solver::validate::{self, Case, Check};
-use phystalk::stages::EngineError;
+use phystalk::stages::{EngineError, fuzz};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -23,6 +23,9 @@ pub struct Arguments {
     /// Only the cases that take seconds
     #[arg(long)]
     quick: bool,
+    /// How many random specs V28 draws
+    #[arg(long, value_name = "N")]
+    specs: Option<u64>,
     /// Write a page with plots too; the plots go to media/ beside it
     #[arg(long, value_name = "FILE.md")]
     page: Option<PathBuf>,
@@ -37,7 +40,11 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
             output::note(format!("{} ({} of {}) …", case.name, number + 1, cases.len()));
         }
         let started = Instant::now();
-        let found = case.run(&gpu).map_err(EngineError::from)?;
+        let found = match arguments.specs {
+            Some(specs) if case.name == "V28" => fuzz::checks(&gpu, 0..specs, &mut |outcome| told(outcome, specs, flags)),
+            _ => case.run(&gpu),
+        };
+        let found = found.map_err(EngineError::from)?;
         if !flags.json {
             found.iter().try_for_each(|check| output::line(line(check)))?;
         }
@@ -60,9 +67,20 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     }
 }
 
+/// Says what went wrong with a random spec, and now and then how far it is.
+fn told(outcome: &fuzz::Outcome, specs: u64, flags: &Flags) {
+    match &outcome.kind {
+        fuzz::Kind::Held | fuzz::Kind::Refused(_) => {}
+        bad => output::note(format!("  seed {}: {bad:?}", outcome.seed)),
+    }
+    if !flags.quiet && (outcome.seed + 1).is_multiple_of(100) {
+        output::note(format!("  {} of {specs}", outcome.seed + 1));
+    }
+}
+
 /// Every case of every room.
 fn cases() -> impl Iterator<Item = &'static Case> {
-    validate::CASES.iter().chain(skin::validate::CASES)
+    validate::CASES.iter().chain(skin::validate::CASES).chain(fuzz::CASES)
 }
 
 /// The cases that were asked for, in their own order.
@@ -127,11 +145,11 @@ mod tests {
 
     #[test]
     fn an_unknown_case_is_refused_with_the_known_ones() {
-        let arguments = Arguments { names: vec!["V99".to_owned()], quick: false, page: None };
+        let arguments = Arguments { names: vec!["V99".to_owned()], quick: false, specs: None, page: None };
         let failure = chosen(&arguments).err().unwrap();
         assert_eq!(failure.kind, Kind::Usage);
         assert!(failure.message.contains("V5"), "{}", failure.message);
-        let both = Arguments { names: vec!["v5".to_owned(), "V1".to_owned()], quick: true, page: None };
+        let both = Arguments { names: vec!["v5".to_owned(), "V1".to_owned()], quick: true, specs: None, page: None };
         assert_eq!(chosen(&both).unwrap().iter().map(|c| c.name).collect::<Vec<_>>(), ["V1"]);
     }
 }

@@ -1,0 +1,93 @@
+//! How stiff a thing may be, so that a frame ends in bounded time; and what is done about what is stiffer.
+//!
+//! A substep is as long as the fastest wave needs for a share of a cell, so steel in small cells asks for millions of
+//! substeps a second, which nobody sees: under its own weight it stays as it is at a thousandth of its
+//! stiffness too. So what would need more substeps than a frame may have is softened to what they carry,
+//! and that is said.
+
+use super::state::ParticleState;
+use super::types::{Settings, Softened};
+use std::collections::BTreeMap;
+
+/// Substeps that a fiftieth of a second, or a shorter frame, may take for the sake of stiffness.
+const SUBSTEPS_A_FRAME: f64 = 4000.0;
+/// Frames longer than this have more of them.
+const FRAME_S: f64 = 0.02;
+/// Substeps that a frame may take at all: what is faster than this passes through thousands of cells in it.
+pub(super) const SUBSTEPS_MOST: f64 = 200_000.0;
+
+/// Speed of compression waves by the moduli alone, sqrt((lambda + 2 mu) / rho).
+fn wave_speed_m_s(s: &ParticleState) -> f32 {
+    ((s.lambda_pa + 2.0 * s.mu_pa) * s.volume_m3 / s.mass_kg).sqrt()
+}
+
+/// Young's modulus from Lamé's two.
+fn young_pa(s: &ParticleState) -> f32 {
+    let (mu, lambda) = (s.mu_pa, s.lambda_pa);
+    if mu > 0.0 { mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu) } else { lambda }
+}
+
+/// Shortest substep that is taken for the sake of stiffness.
+pub(super) fn shortest_s(settings: &Settings) -> f64 {
+    settings.frame_s.min(FRAME_S) / SUBSTEPS_A_FRAME
+}
+
+/// Softens what is stiffer than the shortest substep carries; what was softened, one entry an object.
+pub(super) fn afford(states: &mut [ParticleState], settings: &Settings, time_s: f64) -> Vec<Softened> {
+    let fastest_m_s = (f64::from(settings.cfl) * f64::from(settings.cell_m) / shortest_s(settings)) as f32;
+    let mut softened: BTreeMap<u32, Softened> = BTreeMap::new();
+    for s in states {
+        let factor = (fastest_m_s / wave_speed_m_s(s)).powi(2);
+        // Not again for what was brought to the limit before.
+        if factor > 0.999 {
+            continue;
+        }
+        s.mu_pa *= factor;
+        s.lambda_pa *= factor;
+        let reason = || format!("stiffer, it would take substeps under {:.1e} s", shortest_s(settings));
+        let entry = softened.entry(s.object()).or_insert_with(|| Softened { object: s.object(), factor, young_pa: 0.0, time_s, reason: reason() });
+        entry.factor = entry.factor.min(factor);
+        entry.young_pa = entry.young_pa.max(young_pa(s));
+    }
+    softened.into_values().collect()
+}
+
+/// Halves the moduli of the objects that a predicate picks.
+pub(super) fn halve(states: &mut [ParticleState], picked: impl Fn(u32) -> bool, time_s: f64, reason: &str) -> Vec<Softened> {
+    let mut softened: BTreeMap<u32, Softened> = BTreeMap::new();
+    for s in states.iter_mut().filter(|s| picked(s.object())) {
+        s.mu_pa *= 0.5;
+        s.lambda_pa *= 0.5;
+        let new = Softened { object: s.object(), factor: 0.5, young_pa: 0.0, time_s, reason: reason.to_owned() };
+        let entry = softened.entry(s.object()).or_insert(new);
+        entry.young_pa = entry.young_pa.max(young_pa(s));
+    }
+    softened.into_values().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    fn particle(object: u32, young_pa: f32, poisson: f32) -> ParticleState {
+        let (mu_pa, lambda_pa) = (young_pa / (2.0 * (1.0 + poisson)), young_pa * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)));
+        ParticleState { position_m: Vec3::ZERO, mass_kg: 1e-3, volume_m3: 1e-6, mu_pa, lambda_pa, tag: object, ..Default::default() }
+    }
+
+    #[test]
+    fn what_is_too_stiff_is_brought_to_what_is_carried_once() {
+        let settings = Settings::new(0.02);
+        let mut states = vec![particle(0, 1e5, 0.3), particle(1, 1e12, 0.3), particle(1, 5e11, 0.3)];
+        let softened = afford(&mut states, &settings, 0.0);
+        assert_eq!(softened.len(), 1);
+        assert_eq!(softened[0].object, 1);
+        assert!((young_pa(&states[0]) - 1e5).abs() < 1.0);
+        let carried_s = f64::from(settings.cfl * settings.cell_m / wave_speed_m_s(&states[1]));
+        assert!((carried_s / shortest_s(&settings) - 1.0).abs() < 1e-3, "{carried_s}");
+        assert!((softened[0].young_pa / young_pa(&states[1]) - 1.0).abs() < 1e-3);
+        let kept = states.clone();
+        assert!(afford(&mut states, &settings, 1.0).is_empty());
+        assert_eq!(states, kept);
+    }
+}

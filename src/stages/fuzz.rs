@@ -1,0 +1,210 @@
+//! Random specs from the whole schema, run whole: V28. Nothing that a spec can say may end in numbers
+//! that are none, pass the ground, or make energy of nothing.
+
+use super::{Engine, EngineError, Metrics, RunOptions};
+use crate::gpu::{DeviceRequest, Gpu};
+use crate::scene::{self, Gaussians};
+use crate::solver::SolverError;
+use crate::solver::validate::{Case, Check};
+use crate::spec::{Spec, random};
+use crate::store::Store;
+use crate::{Discard, Stop};
+use glam::Vec3;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The cases of this room.
+pub const CASES: &[Case] = &[Case::new("V28", false, |gpu| checks(gpu, 0..QUICK, &mut |_| ()))];
+/// How many specs a test run draws.
+const QUICK: u64 = 200;
+/// The file that every spec is of, in a folder of its own.
+const SCENE: &str = "block.ply";
+/// Bytes of results that are kept meanwhile.
+const STORE_BYTES: u64 = 256 << 20;
+
+/// What came of one spec.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// It is drawn from this alone.
+    pub seed: u64,
+    /// In one word and, where it is bad, what was seen.
+    pub kind: Kind,
+}
+
+/// See [`Outcome`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// Ran, and all held.
+    Held,
+    /// Refused with a reason before anything moved.
+    Refused(String),
+    /// Given up on the way, with a reason.
+    GivenUp(String),
+    /// Values that are no numbers.
+    Nonfinite(String),
+    /// Something below the ground.
+    Escaped(String),
+    /// More energy than was put in.
+    Energy(String),
+}
+
+/// Draws and runs one spec after another; `told` hears of each.
+pub fn survive(gpu: &Gpu, seeds: Range<u64>, told: &mut dyn FnMut(&Outcome)) -> Result<Vec<Outcome>, EngineError> {
+    let folder = Folder::new()?;
+    let mut outcomes = Vec::new();
+    let mut engine = None;
+    for seed in seeds {
+        let engine = match &mut engine {
+            Some(engine) => engine,
+            none => none.insert(open(gpu, &folder.0)?),
+        };
+        let kind = match random::spec(seed, SCENE) {
+            Err(error) => Kind::Refused(error.to_string()),
+            Ok(spec) => run(engine, &spec, &folder.0),
+        };
+        let outcome = Outcome { seed, kind };
+        told(&outcome);
+        outcomes.push(outcome);
+    }
+    Ok(outcomes)
+}
+
+/// The comparisons of V28 over a range of seeds.
+pub fn checks(gpu: &Gpu, seeds: Range<u64>, told: &mut dyn FnMut(&Outcome)) -> Result<Vec<Check>, SolverError> {
+    let outcomes =
+        survive(gpu, seeds, told).map_err(|e| SolverError::Input { what: e.to_string(), expected: "a folder for its results".to_owned() })?;
+    let share = |of: fn(&Kind) -> bool| outcomes.iter().filter(|o| of(&o.kind)).count() as f64 / outcomes.len().max(1) as f64;
+    let none = |name, formula, of| Check::new(name, formula, "random specs from the whole schema", "of all").compare(0.0, share(of), 0.0);
+    Ok(vec![
+        none("V28 no numbers", "0", |k| matches!(k, Kind::Nonfinite(_))),
+        none("V28 through the ground", "0", |k| matches!(k, Kind::Escaped(_))),
+        none("V28 energy of nothing", "sqrt(2 E / m) <= sqrt(2 E0 / m) + pushes + a t", |k| matches!(k, Kind::Energy(_))),
+        Check::new("V28 given up", "at most 2 %, each with a reason", "random specs from the whole schema", "of all").compare(
+            0.0,
+            share(|k| matches!(k, Kind::GivenUp(_))),
+            0.02,
+        ),
+    ])
+}
+
+fn open(gpu: &Gpu, folder: &Path) -> Result<Engine, EngineError> {
+    let store = Store::open(Some(&folder.join("store")), folder)?.with_cap(STORE_BYTES);
+    let mut engine = Engine::new(store, DeviceRequest::default());
+    engine.gpu = Some(gpu.clone());
+    Ok(engine)
+}
+
+fn run(engine: &mut Engine, spec: &Spec, folder: &Path) -> Kind {
+    let options = RunOptions { render: false, ..RunOptions::default() };
+    match engine.run(spec, folder, &options, None, &mut Discard, &Stop::default()) {
+        Ok(report) => judge(spec, &report.metrics),
+        Err(error @ (EngineError::Unstable(_) | EngineError::Gpu(_) | EngineError::Store(_))) => Kind::GivenUp(error.to_string()),
+        Err(error) => Kind::Refused(error.to_string()),
+    }
+}
+
+fn judge(spec: &Spec, metrics: &Metrics) -> Kind {
+    let series = || metrics.objects.values().flat_map(|o| o.kinetic_j.iter().chain(&o.low_m).chain(&o.speed_m_s));
+    if metrics.solver.nonfinite > 0 || !series().all(|v| v.is_finite()) {
+        return Kind::Nonfinite(format!("{} particles", metrics.solver.nonfinite));
+    }
+    for (name, object) in &metrics.objects {
+        // Frame 0 stands where the spec puts it, under the ground if it says so.
+        let lowest = object.gap_m.iter().skip(1).copied().fold(f64::INFINITY, f64::min);
+        if lowest < -metrics.solver.cell_m {
+            return Kind::Escaped(format!("{name} is {:.2} cells below", -lowest / metrics.solver.cell_m));
+        }
+    }
+    match energy(spec, metrics) {
+        Some(text) => Kind::Energy(text),
+        None => Kind::Held,
+    }
+}
+
+/// Work is force times speed, so that the root of the energy of all grows no faster than what drives it:
+/// sqrt(2 E / m) <= sqrt(2 E0 / m) + pushes + a t. Static contact does no work.
+fn energy(spec: &Spec, metrics: &Metrics) -> Option<String> {
+    let norm = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let driven_m_s2 = norm(&spec.world.gravity_m_s2) + constant_forces(spec)?;
+    let pushes = spec.events.iter().map(|e| e.push_m_s.as_ref().map_or(0.0, norm) + e.velocity_m_s.as_ref().map_or(0.0, norm)).sum::<f64>();
+    let mass: f64 = metrics.objects.values().map(|o| o.mass_kg).sum();
+    let at = |frame: usize| (2.0 * metrics.objects.values().map(|o| o.kinetic_j.get(frame).copied().unwrap_or(0.0)).sum::<f64>() / mass).sqrt();
+    for frame in 1..metrics.frames as usize {
+        let seconds = frame as f64 / f64::from(metrics.fps);
+        let most = at(0) + pushes + driven_m_s2 * seconds;
+        // What weight alone stored in the captured pose.
+        let slack = 0.05 * most + 0.02;
+        if at(frame) > most + slack {
+            return Some(format!("{:.3} m/s at frame {frame}, where at most {most:.3} was put in", at(frame)));
+        }
+    }
+    None
+}
+
+/// The sum of all constant accelerations; none where something drives that has no such bound.
+fn constant_forces(spec: &Spec) -> Option<f64> {
+    let value = serde_json::to_value(spec).ok()?;
+    let drives = |o: &serde_json::Value| o.to_string().contains("activation");
+    if value.get("object").is_some_and(drives) || value.get("event").is_some_and(drives) {
+        return None;
+    }
+    let list = |name: &str| value.get(name).and_then(|v| v.as_array()).cloned().unwrap_or_default();
+    if list("pin").iter().any(|p| p.get("path").is_some_and(|v| !v.is_null())) {
+        return None;
+    }
+    list("force").iter().try_fold(0.0, |sum, force| {
+        let vector: Option<Vec<f64>> = force.get("acceleration_m_s2")?.as_array()?.iter().map(serde_json::Value::as_f64).collect();
+        Some(sum + vector?.iter().map(|c| c * c).sum::<f64>().sqrt())
+    })
+}
+
+/// A folder that goes when it is dropped.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Result<Folder, EngineError> {
+        let folder = std::env::temp_dir().join(format!("phystalk-random-{}-{:p}", std::process::id(), &QUICK));
+        // A folder that cannot be made shows when the scene is written.
+        let _ = std::fs::create_dir_all(&folder);
+        let made = Folder(folder);
+        scene::write(&made.0.join(SCENE), &block())?;
+        Ok(made)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What cannot be removed is in the folder for temporary things.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A block of Gaussians, 0.5 x 0.4 x 0.6 units, standing on z = 0 about x = 0.
+fn block() -> Gaussians {
+    let mut block = Gaussians::default();
+    for i in 0..10 * 8 * 12 {
+        let cell = Vec3::new((i % 10) as f32, (i / 10 % 8) as f32, (i / 80) as f32);
+        block.mean.push((cell - Vec3::new(4.5, 3.5, 0.0)) * 0.05);
+        block.scale.push(Vec3::splat(0.022));
+        block.rotation.push([1.0, 0.0, 0.0, 0.0]);
+        block.opacity.push(0.9);
+        block.sh.extend([0.1; 3]);
+    }
+    block
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn v28_random_specs_are_survived() {
+        let gpu = Gpu::shared_for_tests().unwrap();
+        let mut told = Vec::new();
+        let checks = checks(&gpu, 0..QUICK, &mut |o| told.push(o.clone())).unwrap();
+        let bad: Vec<_> = told.iter().filter(|o| !matches!(o.kind, Kind::Held | Kind::Refused(_))).collect();
+        let held = told.iter().filter(|o| o.kind == Kind::Held).count();
+        assert!(checks.iter().all(|c| c.held), "{bad:#?}");
+        assert!(held as u64 > QUICK / 2, "{held} of {QUICK} ran");
+    }
+}
