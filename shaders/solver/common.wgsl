@@ -40,6 +40,8 @@ struct Params {
     viscosity_units: f32,
     // 1 where some particles are liquids beside the grid.
     has_liquid: u32,
+    // Layers of the grid: how many groups of objects have velocities of their own.
+    layers: u32,
 }
 
 // Offset in nodes of one axis' coordinate within the block-linear storage; the three axes add up.
@@ -96,6 +98,18 @@ fn stencil(x: vec3<f32>, base: vec3<i32>, cell: vec3<u32>) -> Stencil {
         vec3<u32>(o0.z, o1.z, o2.z),
         place,
     );
+}
+
+// Nodes of one layer of the grid; the layers lie one after another.
+fn layer_nodes() -> u32 {
+    return params.blocks.x * params.blocks.y * params.blocks.z * 64u;
+}
+
+// The same nodes in the layer of a particle's object.
+fn in_layer(s: Stencil, tag: u32) -> Stencil {
+    var own = s;
+    own.oz += vec3<u32>((tag & 0xffffu) % params.layers * layer_nodes());
+    return own;
 }
 
 // One of three by number: an index that varies would send the vector through memory.

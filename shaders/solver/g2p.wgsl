@@ -28,11 +28,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let base = base_node(x);
     let first = base - params.origin;
     let cell = vec3<u32>(clamp(first, vec3<i32>(0), vec3<i32>(params.blocks * 4u) - vec3<i32>(3)));
-    let gathered = gather(stencil(x, base, cell));
-    var v = gathered.v;
-    let gradient = gathered.gradient * (4.0 * params.per_m);
     let tag = matter[3u * n + i];
     let object = bitcast<u32>(tag.y);
+    let gathered = gather(in_layer(stencil(x, base, cell), object));
+    var v = gathered.v;
+    let gradient = gathered.gradient * (4.0 * params.per_m);
     x += substep.dt_s * v;
     v += substep.dt_s * objects[object & 0xffffu].xyz;
 

@@ -21,6 +21,8 @@ struct Pin {
 @group(0) @binding(5) var<storage, read_write> marks: array<vec2<u32>>;
 @group(0) @binding(6) var<storage, read_write> velocity: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> control: Control;
+// Mass of each node where there are several layers, in units of the sums; negative where it is pinned.
+@group(0) @binding(8) var<storage, read_write> masses: array<f32>;
 var<immediate> substep: Substep;
 
 // The velocity that a pin gives a node, and 1; zeros where none holds it.
@@ -71,17 +73,14 @@ fn held_by(mark: u32, x: vec3<f32>, viscosity_m2_s: f32) -> f32 {
     return grip / (1.0 + grip);
 }
 
-@compute @workgroup_size(64)
-fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
-    let place = group.y * GROUPS_ACROSS + group.x;
-    if (place == 0u && lane == 0u) {
-        atomicStore(&control.momentum[(substep.index + 1u) & 1u], 0u);
+fn weigh(node: u32, mass: f32) {
+    if (params.layers > 1u) {
+        masses[node] = mass;
     }
-    if (place >= active_blocks[0]) {
-        return;
-    }
-    let block = active_blocks[1u + place];
-    let node = block * 64u + lane;
+}
+
+// One node of one layer; `place` is the node in the first.
+fn settle(node: u32, place: u32, x: vec3<f32>) {
     let sum = sums[node];
     if (sum.w <= 0) {
         if (any(sum != vec4<i32>(0))) {
@@ -89,6 +88,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         }
         marks[node] = vec2<u32>(0u);
         velocity[node] = vec4<f32>(0.0);
+        weigh(node, 0.0);
         return;
     }
     let mark = marks[node];
@@ -99,13 +99,10 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     }
     let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
     var v = vec3<f32>(sum.xyz) * (params.mass_units / momentum_unit) / f32(sum.w);
-    let wet = liquid_pull(node);
+    let wet = liquid_pull(place);
     v += substep.dt_s * (params.gravity_m_s2 + wet.xyz);
-
-    let in_block = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
-    let across = vec3<u32>(block % params.blocks.x, (block / params.blocks.x) % params.blocks.y, block / (params.blocks.x * params.blocks.y));
-    let x = vec3<f32>(params.origin + vec3<i32>(across * 4u + in_block)) * params.cell_m;
     var held = 0.0;
+    var mass = f32(sum.w);
     if (mark.y != 0u) {
         v = respond(v, mark.y, x);
         held = max(held, held_by(mark.y, x, wet.w));
@@ -118,7 +115,27 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         let pin = pinned(x);
         v = select(v, pin.xyz, pin.w > 0.0);
         held = select(held, 0.0, pin.w > 0.0);
+        mass = select(mass, -mass, pin.w > 0.0);
     }
     // Walls along which liquid sticks are the next pass's.
     velocity[node] = vec4<f32>(v, held);
+    weigh(node, mass);
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
+    let place = group.y * GROUPS_ACROSS + group.x;
+    if (place == 0u && lane == 0u) {
+        atomicStore(&control.momentum[(substep.index + 1u) & 1u], 0u);
+    }
+    if (place >= active_blocks[0]) {
+        return;
+    }
+    let block = active_blocks[1u + place];
+    let in_block = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let across = vec3<u32>(block % params.blocks.x, (block / params.blocks.x) % params.blocks.y, block / (params.blocks.x * params.blocks.y));
+    let x = vec3<f32>(params.origin + vec3<i32>(across * 4u + in_block)) * params.cell_m;
+    for (var layer = 0u; layer < params.layers; layer++) {
+        settle(layer * layer_nodes() + block * 64u + lane, block * 64u + lane, x);
+    }
 }

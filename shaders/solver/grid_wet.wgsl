@@ -1,5 +1,5 @@
 // Acceleration by surface tension, m/s^2; kinematic viscosity, m^2/s.
-@group(0) @binding(8) var<storage, read> pull: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read> pull: array<vec4<f32>>;
 
 fn liquid_pull(node: u32) -> vec4<f32> {
     return pull[node];

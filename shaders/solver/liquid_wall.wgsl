@@ -24,7 +24,14 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         return;
     }
     let node = node_of(active_blocks[1u + place], lane);
-    let moving = velocity[node.index];
+    for (var layer = 0u; layer < params.layers; layer++) {
+        hold(node, layer * layer_nodes());
+    }
+}
+
+// One node of the layer that starts at `start`.
+fn hold(node: Node, start: u32) {
+    let moving = velocity[start + node.index];
     if (moving.w <= 0.0) {
         return;
     }
@@ -48,11 +55,11 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         let at = position_of(other);
         if (clear_of_walls(at)) {
             let share = nearest.distance_m / touch(colliders[wall], at).distance_m;
-            on_line = velocity[beside(node, inward * k)].xyz * clamp(share, -2.0, 1.0);
+            on_line = velocity[start + beside(node, inward * k)].xyz * clamp(share, -2.0, 1.0);
             break;
         }
     }
     let across = normal * dot(moving.xyz, normal);
     let along = mix(moving.xyz - across, on_line - normal * dot(on_line, normal), moving.w);
-    velocity[node.index] = vec4<f32>(across + along, 0.0);
+    velocity[start + node.index] = vec4<f32>(across + along, 0.0);
 }

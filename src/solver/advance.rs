@@ -358,6 +358,9 @@ impl Solver {
             if let Some(liquid) = &b.liquid {
                 self.record_walls(liquid, &b.active_groups, recording);
             }
+            if let (Some(encounter), Some(bindings)) = (&self.encounter, &b.encounter) {
+                recording.indirect_with(&encounter.passes.encounter, bindings, &substep, &b.active_groups, 0);
+            }
             recording.dispatch_with(&passes.g2p, &b.g2p, &substep, groups);
         }
         self.record_fields(b, &substep, recording);
@@ -369,6 +372,10 @@ impl Solver {
         let groups = self.particle_groups();
         let blocks = self.params.blocks.iter().product::<u32>();
         let chunks = [blocks.div_ceil(super::constants::SCAN_LANES * super::constants::SCAN_RUN), 1, 1];
+        if self.encounter.is_some() {
+            // Blocks that are left keep no mass that a neighbour could see.
+            recording.clear(&b.masses);
+        }
         recording.dispatch(&self.passes.bin, &b.bin, groups);
         recording.dispatch(&self.passes.scan_sums, &b.scan_sums, chunks);
         recording.dispatch(&self.passes.scan_blocks, &b.scan_blocks, chunks);
@@ -394,11 +401,14 @@ impl Solver {
         let stress = [params, kinematics, matter, control, &laws.table, &laws.activations];
         let around = (&self.colliders_buffer, &self.objects_buffer);
         let g2p = [params, kinematics, matter, &grid.velocity, around.0, around.1, control, &laws.table, &laws.activations, laws.shown()];
-        let mut on_grid = vec![params, &grid.active_blocks, around.0, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, control];
+        let mut on_grid =
+            vec![params, &grid.active_blocks, around.0, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, control, &grid.masses];
         on_grid.extend(grid.liquid.as_ref().map(|l| &l.pull));
         Bound {
             active_groups: grid.active_groups.clone(),
             fields: self.fields.as_ref().map(|f| f.bind(self, state, When::Now)),
+            masses: grid.masses.clone(),
+            encounter: self.encounter.as_ref().map(|e| e.bind(self, grid)),
             bin: gpu.bind(&p.bin, &[params, kinematics, &grid.cell_count, &grid.block_info, &self.control]),
             scan_sums: gpu.bind(&p.scan_sums, &[params, &grid.block_info, &grid.chunk_sums]),
             scan_blocks: gpu
@@ -460,6 +470,8 @@ pub(super) struct Bound {
     pub active_groups: wgpu::Buffer,
     /// Where a scene has fields.
     pub fields: Option<wgpu::BindGroup>,
+    masses: wgpu::Buffer,
+    pub encounter: Option<wgpu::BindGroup>,
     bin: wgpu::BindGroup,
     scan_sums: wgpu::BindGroup,
     scan_blocks: wgpu::BindGroup,

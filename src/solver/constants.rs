@@ -147,6 +147,18 @@ pub const WALL_SOON_S: f32 = 0.1;
 /// Time in which the Gaussians of a liquid go back to their captured shape, seconds.
 pub const LIQUID_SHOWN_S: f32 = 0.25;
 
+/// Layers of the grid at most: objects that move apart from each other.
+pub const MOST_LAYERS: u32 = 8;
+/// Rounds over the pairs of a node where more than two objects meet.
+pub const MEETING_ROUNDS: u32 = 4;
+/// Gradient of mass over mass, a cell, below which a node lies too deep in a body to tell where its surface is.
+pub const FAINT_SLOPE: f32 = 0.3;
+/// And above which it lies too far off: the surface is 0.7 cells away, and other nodes are nearer.
+pub const FAR_SLOPE: f32 = 4.0;
+/// Central difference of mass over mass at a node on the surface of a half-space: (N(1) - N(-1)) / 2 N(0),
+/// N the integral of the quadratic spline.
+pub const SURFACE_SLOPE: f32 = 23.0 / 24.0;
+
 /// All of them as WGSL constants.
 pub fn all() -> Vec<(&'static str, Constant)> {
     vec![
@@ -168,6 +180,11 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("LIGHTEST", Constant::F32(LIGHTEST)),
         ("CARRY_STEPS", Constant::U32(CARRY_STEPS)),
         ("CARRY_SHARE", Constant::F32(CARRY_SHARE)),
+        ("MOST_LAYERS", Constant::U32(MOST_LAYERS)),
+        ("MEETING_ROUNDS", Constant::U32(MEETING_ROUNDS)),
+        ("FAINT_SLOPE", Constant::F32(FAINT_SLOPE)),
+        ("FAR_SLOPE", Constant::F32(FAR_SLOPE)),
+        ("SURFACE_SLOPE", Constant::F32(SURFACE_SLOPE)),
         ("SUM_LIMIT", Constant::F32(SUM_LIMIT)),
         ("ELASTIC", Constant::U32(substance::ELASTIC)),
         ("MUSCLE", Constant::U32(substance::MUSCLE)),

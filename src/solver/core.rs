@@ -2,6 +2,7 @@
 
 use super::budget;
 use super::constants::{FIXED_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
+use super::encounter::{self, Encounter};
 use super::fields::Fields;
 use super::grid::{GridBuffers, Window, allowed_blocks};
 use super::kept::Kept;
@@ -41,7 +42,8 @@ pub(super) struct Params {
     pub tension_units: f32,
     pub viscosity_units: f32,
     pub has_liquid: u32,
-    pub padding: [u32; 3],
+    pub layers: u32,
+    pub padding: [u32; 2],
 }
 
 #[repr(C)]
@@ -69,6 +71,8 @@ pub struct Solver {
     /// Of liquids, where there are any.
     pub(super) liquid: Option<LiquidPasses>,
     pub(super) object_count: u32,
+    /// Contact between objects, where there are several.
+    pub(super) encounter: Option<Encounter>,
     pub(super) control: wgpu::Buffer,
     /// The order of the particles is that of `buffers[current]`; a sort writes the other one.
     pub(super) buffers: [StateBuffers; 2],
@@ -104,8 +108,10 @@ impl Solver {
         let softened = budget::afford(&mut states, &settings, 0.0);
         let n = states.len();
         let heaviest_kg = states.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
+        let object_count = states.iter().map(ParticleState::object).max().unwrap_or(0) + 1;
         let params = Params {
             count: n as u32,
+            layers: encounter::layers(object_count),
             collider_count: colliders.len() as u32,
             gravity_m_s2: settings.gravity_m_s2.into(),
             cell_m: settings.cell_m,
@@ -120,7 +126,6 @@ impl Solver {
             momentum_floor: heaviest_kg * 1e-3,
             ..Default::default()
         };
-        let object_count = states.iter().map(ParticleState::object).max().unwrap_or(0) + 1;
         let mut solver = Solver {
             passes: Passes::new(gpu),
             params_buffer: gpu.storage_from("solver.params", &[params])?,
@@ -128,6 +133,7 @@ impl Solver {
             pins_buffer: gpu.storage::<PinRecord>("solver.pins", settings.pins.len().max(1))?,
             objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,
             object_count,
+            encounter: Encounter::new(gpu, &settings, &states, object_count)?,
             laws: Laws::new(gpu)?,
             liquid: None,
             control: gpu.storage::<Control>("solver.control", 1)?,
@@ -271,8 +277,8 @@ impl Solver {
         }
         // Some more room than is needed now, so that a window lasts many frames; where that does not
         // fit, what is needed.
-        let wet = self.liquid.is_some();
-        let allowed = allowed_blocks(&self.gpu, wet);
+        let (layers, wet) = (encounter::layers(self.object_count), self.liquid.is_some());
+        let allowed = allowed_blocks(&self.gpu, layers, wet);
         let roomy = Window::around(low, high, 2 * margin + 4);
         let window = if roomy.block_count() <= allowed { roomy } else { Window::around(low, high, margin) };
         let blocks = window.block_count();
@@ -284,7 +290,7 @@ impl Solver {
         if self.grid.as_ref().is_none_or(|g| g.capacity < blocks) {
             // The old grid goes first, so that both need not fit.
             self.grid = None;
-            self.grid = Some(GridBuffers::new(&self.gpu, (blocks + blocks / 4).min(allowed), wet)?);
+            self.grid = Some(GridBuffers::new(&self.gpu, (blocks + blocks / 4).min(allowed), layers, wet)?);
         }
         self.params.origin = window.origin.into();
         self.params.blocks = window.blocks.into();

@@ -39,7 +39,7 @@ impl Window {
     }
 }
 
-/// Buffers over the window's nodes and blocks. All but `velocity` and the liquids' fields hold zeros between segments.
+/// Buffers over the window's nodes and blocks. All but `velocity`, `masses` and the liquids' fields hold zeros between segments.
 #[derive(Clone, Debug)]
 pub(super) struct GridBuffers {
     /// Blocks that there is room for.
@@ -47,6 +47,8 @@ pub(super) struct GridBuffers {
     pub sums: wgpu::Buffer,
     pub marks: wgpu::Buffer,
     pub velocity: wgpu::Buffer,
+    /// Where there are several layers.
+    pub masses: wgpu::Buffer,
     pub cell_count: wgpu::Buffer,
     pub cell_start: wgpu::Buffer,
     pub cell_end: wgpu::Buffer,
@@ -59,34 +61,38 @@ pub(super) struct GridBuffers {
     pub liquid: Option<LiquidFields>,
 }
 
-/// Bytes of all buffers for one node.
-const NODE_BYTES: u64 = 52;
+/// Bytes of all buffers for one node, and for it in each layer.
+const NODE_BYTES: u64 = 12;
+const LAYER_BYTES: u64 = 44;
 /// A software adapter shares the machine's memory and is slow over much of it.
 const CPU_GRID_BYTES: u64 = 768 << 20;
 /// Room for other programs and for the picture is left on a GPU.
 const GPU_GRID_BYTES: u64 = 6 << 30;
 
-/// Blocks that the device holds.
-pub(super) fn allowed_blocks(gpu: &Gpu, wet: bool) -> u64 {
+/// Blocks that the device holds in so many layers.
+pub(super) fn allowed_blocks(gpu: &Gpu, layers: u32, wet: bool) -> u64 {
+    let layers = u64::from(layers);
     let limits = gpu.device.limits();
     let widest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     let bytes = match gpu.tier {
         Tier::Cpu => CPU_GRID_BYTES,
         Tier::Gpu => GPU_GRID_BYTES,
     };
-    let node_bytes = NODE_BYTES + if wet { LiquidFields::NODE_BYTES } else { 0 };
-    (widest / 16).min(bytes / node_bytes) / 64
+    let node_bytes = NODE_BYTES + LAYER_BYTES * layers + if wet { LiquidFields::NODE_BYTES } else { 0 };
+    (widest / 16 / layers).min(bytes / node_bytes) / 64
 }
 
 impl GridBuffers {
-    pub fn new(gpu: &Gpu, blocks: u64, wet: bool) -> Result<GridBuffers, SolverError> {
+    pub fn new(gpu: &Gpu, blocks: u64, layers: u32, wet: bool) -> Result<GridBuffers, SolverError> {
         let nodes = blocks as usize * 64;
+        let layered = nodes * layers as usize;
         let chunks = blocks.div_ceil(u64::from(SCAN_LANES * SCAN_RUN)) as usize;
         Ok(GridBuffers {
             capacity: blocks,
-            sums: gpu.storage::<[i32; 4]>("solver.sums", nodes)?,
-            marks: gpu.storage::<[u32; 2]>("solver.marks", nodes)?,
-            velocity: gpu.storage::<[f32; 4]>("solver.velocity", nodes)?,
+            sums: gpu.storage::<[i32; 4]>("solver.sums", layered)?,
+            marks: gpu.storage::<[u32; 2]>("solver.marks", layered)?,
+            velocity: gpu.storage::<[f32; 4]>("solver.velocity", layered)?,
+            masses: gpu.storage::<f32>("solver.masses", if layers > 1 { layered } else { 1 })?,
             cell_count: gpu.storage::<u32>("solver.cell_count", nodes)?,
             cell_start: gpu.storage::<u32>("solver.cell_start", nodes)?,
             cell_end: gpu.storage::<u32>("solver.cell_end", nodes)?,

@@ -16,6 +16,7 @@ mod change;
 mod checkpoint;
 mod constants;
 mod core;
+mod encounter;
 mod fields;
 mod grid;
 mod kept;
@@ -48,6 +49,7 @@ pub use types::{Advance, Collider, Field, ObjectForce, Particles, PinRegion, Pla
 pub fn kernels() -> Vec<KernelSource> {
     let mut all = passes::kernels();
     all.extend(laws::kernels());
+    all.extend(encounter::kernels());
     all.extend(fields::kernels());
     all.extend(liquid::kernels());
     all.extend(sph::kernels());
@@ -60,4 +62,4 @@ pub fn shader_text() -> String {
 }
 
 /// Raised whenever the same input gives other bits.
-pub const VERSION: u32 = 7;
+pub const VERSION: u32 = 8;

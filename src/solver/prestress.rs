@@ -231,6 +231,8 @@ impl Solver {
         let heaviest = pseudo.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
         self.params.mass_units = 2f32.powi(FIXED_BITS as i32 - heaviest.log2().ceil() as i32);
         self.params.momentum_floor = heaviest * 1e-12;
+        // What stands together as captured carries each other.
+        self.params.layers = 1;
         self.buffers[self.current].upload(&self.gpu, pseudo);
         self.set_up(stop)
     }

@@ -156,6 +156,9 @@ pub struct Settings {
     pub forces: Vec<ObjectForce>,
     /// What is driven by expressions.
     pub fields: Vec<Field>,
+    /// Coulomb coefficient of each object against others, by index; of two the larger counts. 0.3 where the
+    /// list ends.
+    pub frictions: Vec<f32>,
     /// Length of a frame. Substeps are equal parts of it, so that an event inside a frame changes
     /// nothing before itself.
     pub frame_s: f64,
@@ -176,6 +179,7 @@ impl Settings {
             pins: Vec::new(),
             forces: Vec::new(),
             fields: Vec::new(),
+            frictions: Vec::new(),
             frame_s: 0.02,
             seed: 1,
             cfl: 0.4,

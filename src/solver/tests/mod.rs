@@ -2,6 +2,7 @@
 
 mod change;
 mod contact;
+mod encounter;
 mod fields;
 pub(super) mod laws;
 mod library;

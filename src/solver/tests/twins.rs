@@ -60,6 +60,8 @@ pub(super) fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState
     settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0, path: vec![[0.5, 0.1, -0.2, 0.3]] }];
     settings.forces = vec![crate::solver::ObjectForce { object: 1, from_s: 0.0, to_s: 1.0, acceleration_m_s2: Vec3::new(3.0, -2.0, 1.0) }];
     let mut solver = solver(settings, &particles);
+    // All on one layer of the grid: `encounter` has the others.
+    solver.params.layers = 1;
     let mut count = 0;
     solver
         .edit(|s| {

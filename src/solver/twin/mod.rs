@@ -1,5 +1,6 @@
 //! The solver's passes in plain Rust, for the tests: the same formulas on a map of nodes, sums in f64.
 
+pub mod encounter;
 pub mod laws;
 pub mod liquid;
 pub mod material;
@@ -150,7 +151,7 @@ pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32, since_s: f32) {
     }
 }
 
-fn pinned(pin: &PinRecord, x: Vec3, since_s: f32) -> bool {
+pub fn pinned(pin: &PinRecord, x: Vec3, since_s: f32) -> bool {
     let x = x - (Vec3::from_slice(&pin.shift) + Vec3::from_slice(&pin.velocity) * since_s);
     let shape = ColliderRecord { at: pin.at, shape: pin.shape, surface: [0.0; 4] };
     x.cmpge(Vec3::from_slice(&pin.low)).all() && x.cmple(Vec3::from_slice(&pin.high)).all() && shape.touch(x).distance_m <= 0.0
