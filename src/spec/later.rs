@@ -7,7 +7,7 @@ use super::error::{SpecError, SpecErrorKind};
 use super::{Event, LiquidSolver, Material, presets};
 
 /// Kinds of material whose laws are to come, and what they are called.
-const KINDS: &[(&str, &str)] = &[("rigid", "rigid bodies"), ("liquid", "liquids")];
+const KINDS: &[(&str, &str)] = &[("rigid", "rigid bodies")];
 
 /// Everything to come, with the words that are refused for it.
 pub(super) fn all() -> impl Iterator<Item = (&'static str, String)> {

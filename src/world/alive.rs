@@ -137,9 +137,8 @@ impl World {
             Effect::Push(push) => self.solver.kick(event.object, *push),
             Effect::Velocity(velocity) => self.solver.set_velocity(event.object, *velocity),
             Effect::Become(stuff) => {
-                let moduli = Moduli::Young { young_pa: stuff.young_pa as f32, poisson: stuff.poisson as f32 };
                 let only = event.piece.map(|piece| self.particles_of(event.object, piece));
-                self.solver.change_material(event.object, only.as_deref(), Some(&stuff.substance), moduli)?;
+                self.solver.change_material(event.object, only.as_deref(), Some(&stuff.substance), stuff.moduli())?;
             }
             Effect::Weaken(share) => {
                 for piece in pieces(event, &self.stuffs) {

@@ -1,7 +1,7 @@
 //! A material in the solver's terms: its law, its moduli, and what `"auto"` means for them.
 
-use crate::solver::{Activation, SolverError, Substance};
-use crate::spec::{self, Auto, Material};
+use crate::solver::{Activation, Moduli, SolverError, Substance, liquid_bulk_pa};
+use crate::spec::{self, Auto, LiquidSolver, Material};
 use glam::DVec3;
 
 /// Compression under its own weight that a flowing thing's automatic stiffness allows.
@@ -16,7 +16,7 @@ const STANDARD_M_S2: f64 = 9.81;
 pub struct Stuff {
     /// The law.
     pub substance: Substance,
-    /// Young's modulus.
+    /// Young's modulus; of a liquid its bulk modulus.
     pub young_pa: f64,
     /// Poisson's ratio.
     pub poisson: f64,
@@ -42,6 +42,10 @@ impl Yardstick {
         if material.stands() {
             return self.standing_pa * density / self.density_kg_m3;
         }
+        if let Material::Liquid(_) = material {
+            let (height_m, gravity_m_s2) = (self.height_m as f32, STANDARD_M_S2 as f32);
+            return f64::from(liquid_bulk_pa(height_m, 0.0, gravity_m_s2, density as f32));
+        }
         // Bulk modulus from depth: K = rho g h / strain, E = 3 K (1 - 2 nu).
         let bulk_pa = density * STANDARD_M_S2 * self.height_m / FLOWING_STRAIN;
         (3.0 * bulk_pa * (1.0 - 2.0 * material.poisson().unwrap_or(0.0))).clamp(FLOWING_PA.0, FLOWING_PA.1)
@@ -59,6 +63,14 @@ impl Yardstick {
 }
 
 impl Stuff {
+    /// What a change to this makes of a particle's moduli.
+    pub fn moduli(&self) -> Moduli {
+        match self.substance.is_liquid() {
+            true => Moduli::Lame { mu_pa: 0.0, lambda_pa: self.young_pa as f32 },
+            false => Moduli::Young { young_pa: self.young_pa as f32, poisson: self.poisson as f32 },
+        }
+    }
+
     /// The same with less strength: yield stress and cohesion times a share. Its moduli are the solver's to scale.
     pub fn weakened(&self, share: f64) -> Stuff {
         let times = |value: f32| (f64::from(value) * share) as f32;
@@ -89,6 +101,9 @@ fn substance(material: &Material) -> Result<Substance, SolverError> {
         }
         Material::Sand(m) => Ok(Substance::Sand { friction_angle_deg: m.friction_angle_deg as f32, cohesion_pa: m.cohesion_pa as f32 }),
         Material::Snow(m) => Ok(Substance::Snow { theta_c: m.theta_c as f32, theta_s: m.theta_s as f32, hardening: m.hardening as f32 }),
+        Material::Liquid(m) if m.solver == LiquidSolver::Mpm => {
+            Ok(Substance::Liquid { viscosity_pa_s: m.viscosity_pa_s as f32, surface_tension_n_m: m.surface_tension_n_m as f32 })
+        }
         other => Err(SolverError::Input { what: format!("a {} material", other.kind()), expected: "a kind whose law it has".to_owned() }),
     }
 }

@@ -193,6 +193,9 @@ pub const SECTIONS: &[Section] = &[
             Sense::Material("dough") => "dough|doughy|bread dough",
             Sense::Material("mud") => "mud|muddy|sludge",
             Sense::Material("jam") => "jam|marmalade",
+            Sense::Material("water") => "water|liquid|fluid|a liquid",
+            Sense::Material("honey") => "honey|syrup",
+            Sense::Material("lava") => "lava|magma|molten rock",
             Sense::Material("sand") => "sand|sandy|dry sand",
             Sense::Material("dry_soil") => "soil|dry soil|dirt",
             Sense::Material("snow") => "snow|snowy",
@@ -202,7 +205,7 @@ pub const SECTIONS: &[Section] = &[
     Section {
         title: "Not built yet: refused by name",
         entries: entries! {
-            Sense::Unbuilt(Unbuilt::Liquid) => "water|lava|honey|oil|milk|blood|syrup|liquid|magma|paint|mercury liquid|molten|fluid|wine",
+            Sense::Unbuilt(Unbuilt::Liquid) => "oil|milk|blood|paint|mercury liquid|wine",
             Sense::Unbuilt(Unbuilt::Rigid) => "rigid|steel|iron|metal|wood|wooden|stone|glass|plastic|concrete|marble|porcelain|ceramic|gold|diamond|ice block|brick|solid",
             Sense::Unbuilt(Unbuilt::Plastic) => "wax|butter|chocolate",
             Sense::Unbuilt(Unbuilt::Viscoplastic) => "toothpaste|slime|cream|ketchup|mayonnaise",

@@ -283,7 +283,7 @@ fn field_name(field: Field) -> &'static str {
 
 fn unbuilt_name(what: Unbuilt) -> &'static str {
     match what {
-        Unbuilt::Liquid => "liquids",
+        Unbuilt::Liquid => "other liquids",
         Unbuilt::Rigid => "rigid bodies",
         Unbuilt::Plastic => "other stuff that keeps dents",
         Unbuilt::Viscoplastic => "other thick stuff",

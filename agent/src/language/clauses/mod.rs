@@ -141,7 +141,7 @@ pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
     // "Liquid" says itself what it is.
     let is = |kind: &str| if kind.ends_with(words) { String::new() } else { format!("{words} is {kind}: ") };
     match what {
-        Unbuilt::Liquid => format!("{}liquids are not built yet; {elastic}", is("a liquid")),
+        Unbuilt::Liquid => format!("{words} is not built yet; liquids are: water, honey, lava, and elastic stuff: rubber, jelly"),
         Unbuilt::Rigid => format!("{}rigid bodies are not built yet; {elastic}, and \"much stiffer\" comes near", is("rigid")),
         Unbuilt::Plastic => format!("{words} is not built yet; what keeps dents is: clay, dough"),
         Unbuilt::Viscoplastic => format!("{words} is not built yet; thick stuff is: mud, jam"),
