@@ -111,7 +111,7 @@ impl Solver {
         let object_count = states.iter().map(ParticleState::object).max().unwrap_or(0) + 1;
         let params = Params {
             count: n as u32,
-            layers: encounter::layers(object_count),
+            layers: encounter::layers(&settings, object_count),
             collider_count: colliders.len() as u32,
             gravity_m_s2: settings.gravity_m_s2.into(),
             cell_m: settings.cell_m,
@@ -277,7 +277,7 @@ impl Solver {
         }
         // Some more room than is needed now, so that a window lasts many frames; where that does not
         // fit, what is needed.
-        let (layers, wet) = (encounter::layers(self.object_count), self.liquid.is_some());
+        let (layers, wet) = (self.params.layers, self.liquid.is_some());
         let allowed = allowed_blocks(&self.gpu, layers, wet);
         let roomy = Window::around(low, high, 2 * margin + 4);
         let window = if roomy.block_count() <= allowed { roomy } else { Window::around(low, high, margin) };

@@ -27,13 +27,13 @@ pub(super) struct Encounter {
 }
 
 /// Layers of the grid for so many objects.
-pub(super) fn layers(object_count: u32) -> u32 {
-    object_count.clamp(1, MOST_LAYERS)
+pub(super) fn layers(settings: &Settings, object_count: u32) -> u32 {
+    if settings.glued { 1 } else { object_count.clamp(1, MOST_LAYERS) }
 }
 
 /// Of each layer: the largest Coulomb coefficient of its objects, and their volume, m^3.
 pub(super) fn surfaces(settings: &Settings, states: &[ParticleState], object_count: u32) -> Vec<[f32; 2]> {
-    let layers = layers(object_count) as usize;
+    let layers = layers(settings, object_count) as usize;
     let mut volume_m3 = vec![0.0f64; layers];
     states.iter().for_each(|s| volume_m3[s.object() as usize % layers] += f64::from(s.volume_m3));
     let of = |object: usize| settings.frictions.get(object).copied().unwrap_or(FRICTION);
@@ -42,9 +42,9 @@ pub(super) fn surfaces(settings: &Settings, states: &[ParticleState], object_cou
 }
 
 impl Encounter {
-    /// None where there is one object.
+    /// None where there is one layer.
     pub fn new(gpu: &Gpu, settings: &Settings, states: &[ParticleState], object_count: u32) -> Result<Option<Encounter>, SolverError> {
-        if layers(object_count) == 1 {
+        if layers(settings, object_count) == 1 {
             return Ok(None);
         }
         let surfaces = gpu.storage_from("solver.surfaces", &surfaces(settings, states, object_count))?;

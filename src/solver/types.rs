@@ -159,6 +159,8 @@ pub struct Settings {
     /// Coulomb coefficient of each object against others, by index; of two the larger counts. 0.3 where the
     /// list ends.
     pub frictions: Vec<f32>,
+    /// Objects that touch stick together: what is one body, driven in parts. Else they meet with friction.
+    pub glued: bool,
     /// Length of a frame. Substeps are equal parts of it, so that an event inside a frame changes
     /// nothing before itself.
     pub frame_s: f64,
@@ -180,6 +182,7 @@ impl Settings {
             forces: Vec::new(),
             fields: Vec::new(),
             frictions: Vec::new(),
+            glued: false,
             frame_s: 0.02,
             seed: 1,
             cfl: 0.4,

@@ -72,7 +72,7 @@ fn between_walls(gpu: &Gpu, viscosity_pa_s: f32, drive_m_s2: f32, driven: f32, s
     for (object, x) in slab.object.iter_mut().zip(&slab.position_m) {
         *object = u32::from(middle(x.y));
     }
-    let mut settings = Settings::new(CELL_M);
+    let mut settings = Settings { glued: true, ..Settings::new(CELL_M) };
     // All of it by its weight; a part of it by a force.
     settings.gravity_m_s2 = if driven < 1.0 { Vec3::ZERO } else { Vec3::Z * drive_m_s2 };
     let forces = vec![ObjectForce { object: 1, from_s: 0.0, to_s: f64::INFINITY, acceleration_m_s2: Vec3::Z * drive_m_s2 }];

@@ -61,7 +61,7 @@ impl Bar {
         let weight = Particles { density_kg_m3: vec![WEIGHT_KG_M3; weight.len()], ..weight };
         particles.substances = vec![substance];
         append(&mut particles, weight, Substance::default());
-        let mut settings = Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) };
+        let mut settings = Settings { gravity_m_s2: Vec3::ZERO, glued: true, ..Settings::new(CELL_M) };
         let clamp = PlaneShape { point_m: [f64::from(first), 0.0, 0.0], normal: [1.0, 0.0, 0.0] };
         let room = Vec3::splat(1.0);
         settings.pins =
