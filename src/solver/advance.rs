@@ -126,8 +126,9 @@ impl Solver {
                     substeps: plan.substeps,
                 });
             }
-            // What is fast takes its frame in several segments, so that the grid need not hold all of its way.
-            let speed_m_s = f64::from(seen.speed_m_s + seen.drift_m_s) + f64::from(acceleration_m_s2) * (until_s - self.time_s);
+            // What is fast takes its frame in several segments, so that the grid need not hold all of its way. Where
+            // they end goes by the whole frame: a cut changes nothing before itself.
+            let speed_m_s = f64::from(seen.speed_m_s + seen.drift_m_s) + f64::from(acceleration_m_s2) * (frame_end_s - self.time_s);
             let at_once = SEGMENT_CELLS * f64::from(self.settings.cell_m) / (speed_m_s * f64::from(plan.dt_s)).max(1e-12);
             if f64::from(plan.substeps) > at_once {
                 plan = Plan { substeps: (at_once as u32).max(1), last_dt_s: plan.dt_s, ..plan };
