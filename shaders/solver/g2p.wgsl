@@ -58,8 +58,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let answer = respond(substance, held_together(old + substep.dt_s * (gradient * old)), tag.w, matter[i].w, matter[n + i].w, flow);
     let weight = substep.dt_next_s * 4.0 * params.per_m * params.per_m * matter[2u * n + i].w;
     let affine = position.w * gradient - weight * answer.tau;
-    // A liquid beside the grid moves by itself.
-    let carried = substance.kind != SPH_LIQUID;
+    // A liquid beside the grid moves by itself, and what is rigid with its body.
+    let carried = substance.kind != SPH_LIQUID && !is_rigid(object);
     let momentum = select(0.0, momentum_measure(position.w, v, affine), carried);
     let speed = select(0.0, length(v), carried);
     if (id.x < n && carried) {

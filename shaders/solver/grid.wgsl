@@ -1,18 +1,6 @@
 // Grid: momentum to velocity, gravity, contact, pins, still or moving. One workgroup for each active block. Leaves the
 // sums and marks that it read zeroed for the next substep.
 
-struct Pin {
-    // As a collider's; w of `at`: 0 half-space, 1 box, 2 capsule or sphere.
-    at: vec4<f32>,
-    shape: vec4<f32>,
-    // Box that it is limited to.
-    low: vec4<f32>,
-    high: vec4<f32>,
-    // How far it has been taken at the start of the segment, and its velocity.
-    shift: vec4<f32>,
-    velocity: vec4<f32>,
-}
-
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
 @group(0) @binding(2) var<storage, read> colliders: array<Collider>;
@@ -24,21 +12,6 @@ struct Pin {
 // Mass of each node where there are several layers, in units of the sums; negative where it is pinned.
 @group(0) @binding(8) var<storage, read_write> masses: array<f32>;
 var<immediate> substep: Substep;
-
-// The velocity that a pin gives a node, and 1; zeros where none holds it.
-fn pinned(x: vec3<f32>) -> vec4<f32> {
-    for (var p = 0u; p < params.pin_count; p++) {
-        let pin = pins[p];
-        let place = x - (pin.shift.xyz + substep.since_s * pin.velocity.xyz);
-        if (any(place < pin.low.xyz) || any(place > pin.high.xyz)) {
-            continue;
-        }
-        if (touch(Collider(pin.at, pin.shape, vec4<f32>(0.0)), place).distance_m <= 0.0) {
-            return vec4<f32>(pin.velocity.xyz, 1.0);
-        }
-    }
-    return vec4<f32>(0.0);
-}
 
 // A node may approach as far as the nearest of its particles has room; then the normal part goes, or
 // comes back by the restitution, and friction takes from the rest what Coulomb grants.

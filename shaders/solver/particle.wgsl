@@ -5,8 +5,9 @@
 //     Between segments A = mass C alone, so that state does not depend on the next step's length.
 // matter: (F row 0, mu), (F row 1, lambda), (F row 2, volume),
 //     (original index, tag, rest offset, history), integers as bits; the tag is the object in its
-//     lower half, the row of the substance in its upper; the history is what the particle's law
-//     remembers beside F. The prestress, which no law remembers, keeps mass over pseudo mass there.
+//     lower half, the row of the substance above it, and the top bit of what a rigid body moves; the
+//     history is what the particle's law remembers beside F. The prestress, which no law remembers,
+//     keeps mass over pseudo mass there.
 
 fn read_affine(i: u32) -> mat3x3<f32> {
     let n = params.count;
@@ -19,4 +20,9 @@ fn read_affine(i: u32) -> mat3x3<f32> {
 fn read_deformation(i: u32) -> mat3x3<f32> {
     let n = params.count;
     return transpose(mat3x3<f32>(matter[i].xyz, matter[n + i].xyz, matter[2u * n + i].xyz));
+}
+
+// Whether a rigid body moves the particle: it then takes no part in what soft matter does.
+fn is_rigid(tag: u32) -> bool {
+    return (tag >> 31u) != 0u;
 }

@@ -1,4 +1,4 @@
-// What particles are made of: a row of the table for each substance, named by the upper half of a
+// What particles are made of: a row of the table for each substance, named by bits 16 to 30 of a
 // particle's tag. Moduli and density are the particle's own.
 
 struct Substance {
@@ -14,7 +14,7 @@ struct Substance {
 }
 
 fn row_of(tag: u32) -> u32 {
-    return tag >> 16u;
+    return (tag >> 16u) & 0x7fffu;
 }
 
 // How a substep deforms a particle.

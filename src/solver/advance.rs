@@ -7,6 +7,7 @@ use super::fields::{Fields, When};
 use super::grid::GridBuffers;
 use super::liquid::LiquidBound;
 use super::obstacles;
+use super::rigid::RigidBound;
 use super::sph::SphBound;
 use super::types::{Advance, SolverError};
 use super::watch::{Control, Watch};
@@ -137,7 +138,7 @@ impl Solver {
             self.ask_fields_at(until_s);
             let reach_m = (speed_m_s * (until_s - self.time_s)) as f32;
             let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + SLACK_CELLS + 3) * room;
-            self.fit_window(seen.low, seen.high, margin)?;
+            self.fit_window(seen.low, if self.soft { seen.high } else { seen.low }, margin)?;
             let (start, order) = (self.substep, self.current);
             let outcome = self.run(&plan, stop)?;
             let Outcome::Done(now) = outcome else {
@@ -238,7 +239,8 @@ impl Solver {
         let limit_s = self.sph().map_or(limit_s, |sph| {
             limit_s.min(sph.limit_s(0.5 * cell_m, f64::from(self.settings.cfl), speed_m_s, f64::from(acceleration_m_s2)) / halved)
         });
-        let dt_s = left_s / (left_s / limit_s).ceil().max(1.0);
+        let rigid_s = self.rigid.as_ref().map_or(f64::INFINITY, |r| r.longest_step_s(acceleration_m_s2)) / f64::from(1u32 << halvings);
+        let dt_s = left_s / (left_s / limit_s.min(rigid_s)).ceil().max(1.0);
         let parts = (until_s - self.time_s) / dt_s;
         let whole = (parts + 1e-6).floor();
         let rest_s = (parts - whole) * dt_s;
@@ -332,11 +334,13 @@ impl Solver {
     }
 
     pub(super) fn record_substep(&mut self, plan: &Plan, step: u32, bound: &[Bound; 2], recording: &mut Recording) {
-        let groups = self.particle_groups();
         let sorts = step.is_multiple_of(plan.sort_every);
         let substep =
             Substep { dt_s: plan.dt_of(step), dt_next_s: plan.dt_of(step + 1), index: self.substep, job: 0, since_s: plan.time_s(step) as f32 };
-        if sorts {
+        if step == 0 {
+            self.rigid.iter().zip(&bound[self.current].rigid).for_each(|(r, b)| r.record_start(b, &substep, recording));
+        }
+        if self.soft && sorts {
             self.record_sort(&bound[self.current], recording);
             self.current = 1 - self.current;
         }
@@ -345,27 +349,35 @@ impl Solver {
             let span_s = plan.time_s((step + plan.sort_every).min(plan.substeps)) - plan.time_s(step);
             self.record_liquid(liquid, &b.active_groups, span_s as f32, recording);
         }
-        let passes = &self.passes;
+        if self.soft {
+            self.record_soft(b, plan, step, &substep, recording);
+        }
+        self.rigid.iter().zip(&b.rigid).for_each(|(r, b)| r.record_substep(b, &substep, self.params.count, recording));
+        self.record_fields(b, &substep, recording);
+        self.substep += 1;
+    }
+
+    /// One substep of everything that is not rigid.
+    fn record_soft(&self, b: &Bound, plan: &Plan, step: u32, substep: &Substep, recording: &mut Recording) {
+        let (passes, groups) = (&self.passes, self.particle_groups());
         if step == 0 {
-            let first = Substep { dt_next_s: substep.dt_s, ..substep };
-            recording.dispatch_with(&passes.stress, &b.stress, &first, groups);
+            recording.dispatch_with(&passes.stress, &b.stress, &Substep { dt_next_s: substep.dt_s, ..*substep }, groups);
         }
         if let (Some(sph), Some(bound)) = (self.sph(), &b.sph) {
-            sph.record(bound, &substep, plan.viscous_rounds, groups, recording);
+            sph.record(bound, substep, plan.viscous_rounds, groups, recording);
         }
         if self.has_solids() {
-            recording.dispatch_with(&passes.p2g, &b.p2g, &substep, groups);
-            recording.indirect_with(&passes.grid, &b.grid, &substep, &b.active_groups, 0);
+            recording.dispatch_with(&passes.p2g, &b.p2g, substep, groups);
+            self.rigid.iter().zip(&b.rigid).for_each(|(r, b)| r.record_meeting(b, substep, groups, recording));
+            recording.indirect_with(&passes.grid, &b.grid, substep, &b.active_groups, 0);
             if let Some(liquid) = &b.liquid {
                 self.record_walls(liquid, &b.active_groups, recording);
             }
             if let (Some(encounter), Some(bindings)) = (&self.encounter, &b.encounter) {
-                recording.indirect_with(&encounter.passes.encounter, bindings, &substep, &b.active_groups, 0);
+                recording.indirect_with(&encounter.passes.encounter, bindings, substep, &b.active_groups, 0);
             }
-            recording.dispatch_with(&passes.g2p, &b.g2p, &substep, groups);
+            recording.dispatch_with(&passes.g2p, &b.g2p, substep, groups);
         }
-        self.record_fields(b, &substep, recording);
-        self.substep += 1;
     }
 
     /// Puts the particles in the order of their cells and lists the blocks that they may reach.
@@ -406,6 +418,7 @@ impl Solver {
             vec![params, &grid.active_blocks, around.0, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, control, &grid.masses];
         on_grid.extend(grid.liquid.as_ref().map(|l| &l.pull));
         Bound {
+            rigid: self.rigid.as_ref().map(|r| r.bind(self, grid, current)),
             active_groups: grid.active_groups.clone(),
             fields: self.fields.as_ref().map(|f| f.bind(self, state, When::Now)),
             masses: grid.masses.clone(),
@@ -468,6 +481,7 @@ impl Solver {
 
 /// The bind groups of the passes over one of the two state buffers.
 pub(super) struct Bound {
+    pub rigid: Option<RigidBound>,
     pub active_groups: wgpu::Buffer,
     /// Where a scene has fields.
     pub fields: Option<wgpu::BindGroup>,

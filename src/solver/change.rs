@@ -46,6 +46,9 @@ impl Solver {
     /// other moduli, at the present time. Mass, places, velocities and what is seen stay; what F the new
     /// law goes on with is for [`Substance`] to say. No substance: that which it has.
     pub fn change_material(&mut self, object: u32, only: Option<&[u32]>, substance: Option<&Substance>, moduli: Moduli) -> Result<(), SolverError> {
+        if substance.is_some_and(|s| s.rigid().is_some()) {
+            return Err(SolverError::Input { what: "a change to a rigid body".to_owned(), expected: "soft matter".to_owned() });
+        }
         let row = substance.map(|s| self.row_for(s)).transpose()?;
         let mut picked = vec![only.is_none(); self.params.count as usize];
         for &index in only.into_iter().flatten() {
@@ -57,7 +60,7 @@ impl Solver {
         let mut states = self.states()?;
         let mut unstressed: Vec<Rows> = self.gpu.read(&self.unstressed, states.len())?;
         let mut shown = self.shown()?;
-        for (i, state) in states.iter_mut().enumerate().filter(|(i, s)| picked[*i] && s.object() == object) {
+        for (i, state) in states.iter_mut().enumerate().filter(|(i, s)| picked[*i] && s.object() == object && !s.is_rigid()) {
             (state.mu_pa, state.lambda_pa) = moduli.of(state.mu_pa, state.lambda_pa);
             let modulus = state.lambda_pa + 2.0 * state.mu_pa;
             if !(state.mu_pa >= 0.0 && modulus > 0.0 && modulus.is_finite()) {
@@ -79,6 +82,7 @@ impl Solver {
         }
         self.gpu.upload(&self.unstressed, &unstressed);
         self.set_shown(&shown);
+        self.set_layers(&states)?;
         self.replace(states);
         Ok(())
     }

@@ -68,6 +68,7 @@ impl Solver {
         if let Some(row) = particles.iter().map(ParticleState::substance).find(|&row| row >= table.len()) {
             return Err(refuse(format!("a particle of substance {row} of {}", table.len())));
         }
+        self.set_layers(&particles)?;
         self.replace(particles);
         if header.time_s > 0.0 {
             // Told when it happened, on the way here.

@@ -146,6 +146,40 @@ pub const WALL_GRIP: f32 = 50.0;
 pub const WALL_SOON_S: f32 = 0.1;
 /// Time in which the Gaussians of a liquid go back to their captured shape, seconds.
 pub const LIQUID_SHOWN_S: f32 = 0.25;
+/// Rigid bodies of one scene, at most.
+pub const RIGID_BODIES: u32 = 128;
+/// Threads a workgroup of the passes over bodies.
+pub const RIGID_LANES: u32 = 64;
+/// Points of a body's surface, at most.
+pub const RIGID_POINTS: u32 = 512;
+/// Coefficients of all bodies' distance fields together.
+pub const RIGID_FIELD: u32 = 4_000_000;
+/// Other things that a body's points meet at one time, at most.
+pub const RIGID_SLOTS: u32 = 12;
+/// Contacts that a body had in the substep before, at most: four a slot.
+pub const RIGID_OLD: u32 = 4 * RIGID_SLOTS;
+/// Steps in which a surface point slides to where it is nearest.
+pub const RIGID_SLIDES: u32 = 4;
+/// Rounds of impulses before positions move.
+pub const RIGID_ROUNDS: u32 = 8;
+/// And after, without the push that takes overlaps apart.
+pub const RIGID_CALM_ROUNDS: u32 = 4;
+/// Stiffness of that push, as the frequency of a spring.
+pub const RIGID_HERTZ: f32 = 60.0;
+/// Its damping ratio.
+pub const RIGID_DAMPING: f32 = 10.0;
+/// No overlap opens faster than this many radii of the body a second.
+pub const RIGID_PUSH_RATE: f32 = 5.0;
+/// What positions of bodies are counted in: a power of two, so that whole numbers of it are exact.
+pub const RIGID_QUANTUM_M: f32 = 1.0 / 1_048_576.0;
+/// What fields give a body is summed in shares of its mass times this speed, m/s.
+pub const DRIVEN_UNIT: f32 = 1.0 / 2_147_483_648.0;
+/// Units in the high word of such a sum: the low words of half a million particles fit one.
+pub const DRIVEN_LOW: f32 = 4096.0;
+/// Longest substep of rigid bodies, seconds.
+pub const RIGID_STEP_S: f64 = 5e-4;
+/// And in units of the time in which the smallest body falls by its own radius.
+pub const RIGID_STEP_SHARE: f64 = 0.02;
 
 /// Layers of the grid at most: objects that move apart from each other.
 pub const MOST_LAYERS: u32 = 8;
@@ -174,6 +208,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("J_LEAST", Constant::F32(J_LEAST)),
         ("J_MOST", Constant::F32(J_MOST)),
         ("GAP_STEPS", Constant::F32(GAP_STEPS)),
+        ("REST_CELLS", Constant::F32(REST_CELLS)),
         ("REST_CELLS_MAX", Constant::F32(REST_CELLS_MAX)),
         ("TOUCHING_CELLS", Constant::F32(TOUCHING_CELLS)),
         ("RELEASE", Constant::F32(RELEASE)),
@@ -237,5 +272,20 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("TENSION", Constant::F32(TENSION)),
         ("KEEP_APART", Constant::F32(KEEP_APART)),
         ("KEEP_APART_STRENGTH", Constant::F32(KEEP_APART_STRENGTH)),
+        ("RIGID", Constant::U32(substance::RIGID)),
+        ("RIGID_BODIES", Constant::U32(RIGID_BODIES)),
+        ("RIGID_LANES", Constant::U32(RIGID_LANES)),
+        ("RIGID_POINTS", Constant::U32(RIGID_POINTS)),
+        ("RIGID_SLOTS", Constant::U32(RIGID_SLOTS)),
+        ("RIGID_OLD", Constant::U32(RIGID_OLD)),
+        ("RIGID_SLIDES", Constant::U32(RIGID_SLIDES)),
+        ("RIGID_ROUNDS", Constant::U32(RIGID_ROUNDS)),
+        ("RIGID_CALM_ROUNDS", Constant::U32(RIGID_CALM_ROUNDS)),
+        ("RIGID_HERTZ", Constant::F32(RIGID_HERTZ)),
+        ("RIGID_DAMPING", Constant::F32(RIGID_DAMPING)),
+        ("DRIVEN_UNIT", Constant::F32(DRIVEN_UNIT)),
+        ("DRIVEN_LOW", Constant::F32(DRIVEN_LOW)),
+        ("RIGID_QUANTUM_M", Constant::F32(RIGID_QUANTUM_M)),
+        ("RIGID_PUSH_RATE", Constant::F32(RIGID_PUSH_RATE)),
     ]
 }

@@ -4,12 +4,13 @@ use super::budget;
 use super::constants::{FIXED_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
 use super::encounter::{self, Encounter};
 use super::fields::Fields;
-use super::grid::{GridBuffers, Window, allowed_blocks};
+use super::grid::{GridBuffers, GridKind, Window, allowed_blocks};
 use super::kept::Kept;
 use super::laws::{Laws, rows};
 use super::liquid::LiquidPasses;
 use super::obstacles::{self, PinRecord};
 use super::passes::Passes;
+use super::rigid::{self, Rigid};
 use super::sph::Sph;
 use super::state::{self, ParticleState, StateBuffers};
 use super::types::{Particles, Placement, Settings, Softened, SolverError};
@@ -47,8 +48,8 @@ pub(super) struct Params {
 }
 
 #[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Kick {
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(super) struct Kick {
     add_m_s: [f32; 3],
     keep: f32,
     object: u32,
@@ -84,6 +85,10 @@ pub struct Solver {
     pub(super) kept: Vec<Kept>,
     /// Liquids beside the grid, where there are any.
     pub(super) sph: Option<Sph>,
+    /// Rigid bodies, where there are any.
+    pub(super) rigid: Option<Rigid>,
+    /// Whether anything is soft: without it the grid is not used.
+    pub(super) soft: bool,
     pub(super) slots: wgpu::Buffer,
     /// Rows of F0^-1 in the original order.
     pub(super) unstressed: wgpu::Buffer,
@@ -111,7 +116,7 @@ impl Solver {
         let object_count = states.iter().map(ParticleState::object).max().unwrap_or(0) + 1;
         let params = Params {
             count: n as u32,
-            layers: encounter::layers(&settings, object_count),
+            layers: encounter::layers(&settings, &states, object_count),
             collider_count: colliders.len() as u32,
             gravity_m_s2: settings.gravity_m_s2.into(),
             cell_m: settings.cell_m,
@@ -126,6 +131,7 @@ impl Solver {
             momentum_floor: heaviest_kg * 1e-3,
             ..Default::default()
         };
+        let rigid = rigid::assemble(&states, &particles.substances, &colliders, settings.cell_m)?.map(|all| Rigid::new(gpu, &all)).transpose()?;
         let mut solver = Solver {
             passes: Passes::new(gpu),
             params_buffer: gpu.storage_from("solver.params", &[params])?,
@@ -141,8 +147,10 @@ impl Solver {
             current: 0,
             backup: StateBuffers::new(gpu, "solver.backup", n)?,
             fields: Fields::new(gpu, &settings, particles, params.seed)?,
-            kept: Vec::new(),
             sph: None,
+            kept: rigid.iter().flat_map(Rigid::kept).collect(),
+            rigid,
+            soft: states.iter().any(|s| !s.is_rigid()),
             slots: gpu.storage::<[u32; 4]>("solver.slots", n)?,
             unstressed: gpu.storage_from("solver.unstressed", &vec![rows(Mat3::IDENTITY); n])?,
             motion: gpu.storage::<[u32; 8]>("solver.motion", n)?,
@@ -214,7 +222,8 @@ impl Solver {
             s.velocity_m_s = placement.velocity_m_s + spin.cross(s.position_m - centre);
             s.set_affine(cross * s.mass_kg);
         })?;
-        self.edit_shown(|i, g| if moved[i] { turn * g } else { g })
+        self.edit_shown(|i, g| if moved[i] { turn * g } else { g })?;
+        self.rigid.iter().try_for_each(|r| r.place(&self.gpu, object, placement))
     }
 
     /// Adds to the velocity of all of an object.
@@ -234,8 +243,14 @@ impl Solver {
         let mut recording = Recording::default();
         let kick = Kick { add_m_s: add.into(), keep, object, padding: [0; 3] };
         recording.dispatch_with(&self.passes.kick, &bindings, &kick, self.particle_groups());
+        self.rigid.iter().for_each(|r| r.record_kick(self, &kick, &mut recording));
         self.gpu.submit(&recording);
         self.seen = None;
+    }
+
+    /// Where the rigid bodies are and how they move.
+    pub(super) fn motions(&self) -> Result<Vec<rigid::Motion>, SolverError> {
+        self.rigid.as_ref().map_or_else(|| Ok(Vec::new()), |r| r.motions(&self.gpu))
     }
 
     /// State beside the particles.
@@ -270,6 +285,11 @@ impl Solver {
         [self.params.count.div_ceil(WORKGROUP), 1, 1]
     }
 
+    /// What the scene asks of its grid now.
+    pub(super) fn grid_kind(&self) -> GridKind {
+        GridKind { layers: self.params.layers, wet: self.liquid.is_some(), meets: self.rigid.is_some() && self.soft }
+    }
+
     /// Makes the window hold stencils from `low` to `high` with room around them.
     pub(super) fn fit_window(&mut self, low: IVec3, high: IVec3, margin: i32) -> Result<(), SolverError> {
         if self.window.is_some_and(|w| w.holds(low, high, margin)) {
@@ -277,8 +297,8 @@ impl Solver {
         }
         // Some more room than is needed now, so that a window lasts many frames; where that does not
         // fit, what is needed.
-        let (layers, wet) = (self.params.layers, self.liquid.is_some());
-        let allowed = allowed_blocks(&self.gpu, layers, wet);
+        let kind = self.grid_kind();
+        let allowed = allowed_blocks(&self.gpu, kind);
         let roomy = Window::around(low, high, 2 * margin + 4);
         let window = if roomy.block_count() <= allowed { roomy } else { Window::around(low, high, margin) };
         let blocks = window.block_count();
@@ -290,7 +310,7 @@ impl Solver {
         if self.grid.as_ref().is_none_or(|g| g.capacity < blocks) {
             // The old grid goes first, so that both need not fit.
             self.grid = None;
-            self.grid = Some(GridBuffers::new(&self.gpu, (blocks + blocks / 4).min(allowed), layers, wet)?);
+            self.grid = Some(GridBuffers::new(&self.gpu, (blocks + blocks / 4).min(allowed), kind)?);
         }
         self.params.origin = window.origin.into();
         self.params.blocks = window.blocks.into();

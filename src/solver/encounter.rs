@@ -26,14 +26,17 @@ pub(super) struct Encounter {
     surfaces: wgpu::Buffer,
 }
 
-/// Layers of the grid for so many objects.
-pub(super) fn layers(settings: &Settings, object_count: u32) -> u32 {
-    if settings.glued { 1 } else { object_count.clamp(1, MOST_LAYERS) }
+/// Layers of the grid: one for each object, where several have soft matter. Rigid bodies meet others without it.
+pub(super) fn layers(settings: &Settings, states: &[ParticleState], object_count: u32) -> u32 {
+    let mut soft = states.iter().filter(|s| !s.is_rigid()).map(ParticleState::object);
+    let first = soft.next();
+    let several = soft.any(|object| Some(object) != first);
+    if settings.glued || !several { 1 } else { object_count.clamp(1, MOST_LAYERS) }
 }
 
 /// Of each layer: the largest Coulomb coefficient of its objects, and their volume, m^3.
 pub(super) fn surfaces(settings: &Settings, states: &[ParticleState], object_count: u32) -> Vec<[f32; 2]> {
-    let layers = layers(settings, object_count) as usize;
+    let layers = layers(settings, states, object_count) as usize;
     let mut volume_m3 = vec![0.0f64; layers];
     states.iter().for_each(|s| volume_m3[s.object() as usize % layers] += f64::from(s.volume_m3));
     let of = |object: usize| settings.frictions.get(object).copied().unwrap_or(FRICTION);
@@ -41,10 +44,27 @@ pub(super) fn surfaces(settings: &Settings, states: &[ParticleState], object_cou
     volume_m3.iter().enumerate().map(|(layer, &volume)| [largest(layer), volume as f32]).collect()
 }
 
+impl Solver {
+    /// Takes note of which objects are soft, after that changed: what meets what on the grid follows from it.
+    pub(super) fn set_layers(&mut self, states: &[ParticleState]) -> Result<(), SolverError> {
+        let layers = layers(&self.settings, states, self.object_count);
+        if layers != self.params.layers {
+            self.encounter = Encounter::new(&self.gpu, &self.settings, states, self.object_count)?;
+            self.params.layers = layers;
+        }
+        self.soft = states.iter().any(|s| !s.is_rigid());
+        if self.grid.as_ref().is_some_and(|g| g.kind != self.grid_kind()) {
+            // The next one has what is asked for now.
+            (self.grid, self.window) = (None, None);
+        }
+        Ok(())
+    }
+}
+
 impl Encounter {
     /// None where there is one layer.
     pub fn new(gpu: &Gpu, settings: &Settings, states: &[ParticleState], object_count: u32) -> Result<Option<Encounter>, SolverError> {
-        if layers(settings, object_count) == 1 {
+        if layers(settings, states, object_count) == 1 {
             return Ok(None);
         }
         let surfaces = gpu.storage_from("solver.surfaces", &surfaces(settings, states, object_count))?;

@@ -44,6 +44,7 @@ impl Window {
 pub(super) struct GridBuffers {
     /// Blocks that there is room for.
     pub capacity: u64,
+    pub kind: GridKind,
     pub sums: wgpu::Buffer,
     pub marks: wgpu::Buffer,
     pub velocity: wgpu::Buffer,
@@ -59,36 +60,60 @@ pub(super) struct GridBuffers {
     pub active_groups: wgpu::Buffer,
     /// Of liquids, where there are any.
     pub liquid: Option<LiquidFields>,
+    /// What rigid bodies and soft matter share, where there are both.
+    pub meeting: Option<MeetingBuffers>,
 }
 
-/// Bytes of all buffers for one node, and for it in each layer.
+/// See `shaders/solver/rigid_meeting.wgsl`.
+#[derive(Clone, Debug)]
+pub(super) struct MeetingBuffers {
+    pub nears: wgpu::Buffer,
+    pub meetings: wgpu::Buffer,
+}
+
+/// Bytes of all buffers for one node, for it in each layer, and there with rigid bodies.
 const NODE_BYTES: u64 = 12;
 const LAYER_BYTES: u64 = 44;
+const MEETING_BYTES: u64 = 76;
 /// A software adapter shares the machine's memory and is slow over much of it.
 const CPU_GRID_BYTES: u64 = 768 << 20;
 /// Room for other programs and for the picture is left on a GPU.
 const GPU_GRID_BYTES: u64 = 6 << 30;
 
-/// Blocks that the device holds in so many layers.
-pub(super) fn allowed_blocks(gpu: &Gpu, layers: u32, wet: bool) -> u64 {
-    let layers = u64::from(layers);
+/// What a scene asks of its grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct GridKind {
+    /// How many groups of objects have velocities of their own.
+    pub layers: u32,
+    /// Whether there are liquids on it.
+    pub wet: bool,
+    /// Whether soft matter meets rigid bodies.
+    pub meets: bool,
+}
+
+/// Blocks that the device holds.
+pub(super) fn allowed_blocks(gpu: &Gpu, kind: GridKind) -> u64 {
+    let layers = u64::from(kind.layers);
     let limits = gpu.device.limits();
     let widest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     let bytes = match gpu.tier {
         Tier::Cpu => CPU_GRID_BYTES,
         Tier::Gpu => GPU_GRID_BYTES,
     };
-    let node_bytes = NODE_BYTES + LAYER_BYTES * layers + if wet { LiquidFields::NODE_BYTES } else { 0 };
-    (widest / 16 / layers).min(bytes / node_bytes) / 64
+    let layer_bytes = LAYER_BYTES + if kind.meets { MEETING_BYTES } else { 0 };
+    let node_bytes = NODE_BYTES + layer_bytes * layers + if kind.wet { LiquidFields::NODE_BYTES } else { 0 };
+    (widest / if kind.meets { 64 } else { 16 } / layers).min(bytes / node_bytes) / 64
 }
 
 impl GridBuffers {
-    pub fn new(gpu: &Gpu, blocks: u64, layers: u32, wet: bool) -> Result<GridBuffers, SolverError> {
+    pub fn new(gpu: &Gpu, blocks: u64, kind: GridKind) -> Result<GridBuffers, SolverError> {
+        let (layers, wet) = (kind.layers, kind.wet);
         let nodes = blocks as usize * 64;
         let layered = nodes * layers as usize;
         let chunks = blocks.div_ceil(u64::from(SCAN_LANES * SCAN_RUN)) as usize;
         Ok(GridBuffers {
             capacity: blocks,
+            kind,
             sums: gpu.storage::<[i32; 4]>("solver.sums", layered)?,
             marks: gpu.storage::<[u32; 2]>("solver.marks", layered)?,
             velocity: gpu.storage::<[f32; 4]>("solver.velocity", layered)?,
@@ -102,11 +127,24 @@ impl GridBuffers {
             active_blocks: gpu.storage::<u32>("solver.active_blocks", blocks as usize + 1)?,
             active_groups: gpu.storage::<u32>("solver.active_groups", 4)?,
             liquid: if wet { Some(LiquidFields::new(gpu, nodes)?) } else { None },
+            meeting: if kind.meets { Some(MeetingBuffers::new(gpu, layered)?) } else { None },
         })
     }
 
     /// What a segment that went wrong may have left behind.
     pub fn dirty(&self) -> impl Iterator<Item = &wgpu::Buffer> {
-        [&self.sums, &self.marks, &self.cell_count, &self.block_info].into_iter().chain(self.liquid.as_ref().map(|l| &l.fill))
+        [&self.sums, &self.marks, &self.cell_count, &self.block_info]
+            .into_iter()
+            .chain(self.liquid.as_ref().map(|l| &l.fill))
+            .chain(self.meeting.as_ref().map(|m| &m.nears))
+    }
+}
+
+impl MeetingBuffers {
+    fn new(gpu: &Gpu, nodes: usize) -> Result<MeetingBuffers, SolverError> {
+        Ok(MeetingBuffers {
+            nears: gpu.storage::<[u32; 3]>("solver.rigid.nears", nodes)?,
+            meetings: gpu.storage::<[f32; 16]>("solver.rigid.meetings", nodes)?,
+        })
     }
 }

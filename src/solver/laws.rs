@@ -75,12 +75,12 @@ impl Solver {
         if let Some(what) = substances.iter().find_map(Substance::flaw) {
             return Err(SolverError::Input { what, expected: "numbers within the law's range".to_owned() });
         }
-        if substances.len() > 1 << 16 {
-            return Err(SolverError::Input { what: format!("{} substances", substances.len()), expected: "at most 65536".to_owned() });
+        if substances.len() > 1 << 15 {
+            return Err(SolverError::Input { what: format!("{} substances", substances.len()), expected: "at most 32768".to_owned() });
         }
         self.laws.table = self.gpu.storage_from("solver.substances", &padded(&substance::records(substances), 1))?;
         self.laws.substances = substances.to_vec();
-        if !self.laws.all && !substances.iter().all(Substance::is_elastic) {
+        if !self.laws.all && !substances.iter().all(Substance::is_plain) {
             let LawPasses { stress_laws, g2p_laws, prestress_gather_laws } = LawPasses::new(&self.gpu);
             self.passes.stress = stress_laws;
             self.passes.g2p = g2p_laws;

@@ -15,7 +15,7 @@ use crate::gpu::{Gpu, Recording};
 passes! {
     /// Passes that only scenes with a liquid have; `grid_wet` takes the place of `grid`.
     LiquidPasses;
-    grid_wet: ["control", "substep", "contact", "grid_wet", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Read] SUBSTEP;
+    grid_wet: ["control", "substep", "contact", "pin", "grid_wet", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Read] SUBSTEP;
     liquid_wall: ["contact", "node", "liquid_wall"] [Read, Read, Read, Write] 0;
     liquid_fill: ["substance", "particle", "liquid_fill"] [Read, Read, Read, Read, Write] 0;
     liquid_share: ["contact", "node", "liquid_share"] [Read, Read, Read, Write, Write, Write] 0;

@@ -24,6 +24,7 @@ mod laws;
 mod liquid;
 mod obstacles;
 mod prestress;
+mod rigid;
 mod sph;
 mod state;
 mod substance;
@@ -53,6 +54,7 @@ pub fn kernels() -> Vec<KernelSource> {
     all.extend(fields::kernels());
     all.extend(liquid::kernels());
     all.extend(sph::kernels());
+    all.extend(rigid::all_kernels());
     all
 }
 
@@ -62,4 +64,4 @@ pub fn shader_text() -> String {
 }
 
 /// Raised whenever the same input gives other bits.
-pub const VERSION: u32 = 9;
+pub const VERSION: u32 = 10;

@@ -63,7 +63,7 @@ passes! {
     order: ["order"] [Read, Read, Read, Read, Write, Write] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
     p2g: ["control", "substep", "substance", "hash", "particle", "contact", "p2g"] [Read, Read, Read, Read, Write, Write, Write, Read] SUBSTEP;
-    grid: ["control", "substep", "contact", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
+    grid: ["control", "substep", "contact", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     g2p: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;
     kick: ["particle", "particle_write", "kick"] [Read, Write, Read] KICK;

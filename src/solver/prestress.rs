@@ -12,11 +12,12 @@ use super::constants::{FIXED_BITS, REST_CELLS, REST_CELLS_MAX, SLACK_CELLS};
 use super::core::Solver;
 use super::grid::GridBuffers;
 use super::obstacles::{self, distance_m};
-use super::state::ParticleState;
+use super::state::{ParticleState, RIGID_TAG};
 use super::types::{PrestressReport, SolverError};
 use crate::Stop;
 use crate::gpu::{Recording, Tier};
 use bytemuck::{Pod, Zeroable};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// `Search` of `shaders/solver/prestress.wgsl`.
 #[repr(C)]
@@ -47,6 +48,8 @@ const VECTORS: usize = 5;
 const SETTLED: f32 = 1e-3;
 /// The search is over when a whole system gains less than this share: strains squared are accounted for.
 const CONVERGED: f32 = 1e-2;
+/// Modulus of a rigid part over that of the stiffest particle of its object, while the search runs.
+const RIGID_OVER_SOFT: f32 = 8.0;
 /// Share of an object's height, from its lowest point, that counts as the base it stands on.
 const BASE_SHARE: f32 = 0.03;
 /// A particle is not started with less of its volume than this.
@@ -103,11 +106,17 @@ impl Solver {
         if objects.is_empty() || self.settings.gravity_m_s2 == glam::Vec3::ZERO {
             return Ok(report);
         }
+        let mut states = self.states()?;
+        // What is wholly rigid carries any load as it is.
+        let soft: BTreeSet<u32> = states.iter().filter(|s| !s.is_rigid()).map(ParticleState::object).collect();
+        let objects: Vec<u32> = objects.iter().copied().filter(|o| soft.contains(o)).collect();
+        if objects.is_empty() {
+            return Ok(report);
+        }
         let seen = self.look()?;
         self.fit_window(seen.low, seen.high, SLACK_CELLS + 3)?;
         self.set_surroundings();
-        let mut states = self.states()?;
-        let supported = self.settle_offsets(&mut states, objects, &mut report);
+        let supported = self.settle_offsets(&mut states, &objects, &mut report);
         if supported.is_empty() {
             return Ok(report);
         }
@@ -123,7 +132,7 @@ impl Solver {
         let found = result?;
         let mut unstressed: Vec<[f32; 12]> = self.gpu.read(&self.unstressed, states.len())?;
         for (i, (state, found)) in states.iter_mut().zip(&found).enumerate() {
-            if supported.contains(&state.object()) && can_carry(found.f()) {
+            if supported.contains(&state.object()) && !state.is_rigid() && can_carry(found.f()) {
                 state.deformation = found.deformation;
                 let inverse = state.f().as_dmat3().inverse().as_mat3().transpose();
                 let rows = [inverse.x_axis, inverse.y_axis, inverse.z_axis].map(|row| row.extend(0.0).to_array());
@@ -208,10 +217,21 @@ impl Solver {
     }
 
     /// Particles whose mass is a stiffness: V (lambda + 2 mu) / (C cell)^2, at rest under their weight.
+    /// Rigid parts count as much stiffer than the soft ones that hang on them.
     fn pseudo_particles(&self, states: &[ParticleState], objects: &[u32]) -> Vec<ParticleState> {
         let mut pseudo = states.to_vec();
+        let mut stiffest: BTreeMap<u32, f32> = BTreeMap::new();
+        for state in states {
+            let most = stiffest.entry(state.object()).or_default();
+            *most = most.max(state.lambda_pa + 2.0 * state.mu_pa);
+        }
         for state in &mut pseudo {
             let takes_part = objects.contains(&state.object()) && self.laws.substances[state.substance()].can_stand();
+            if state.is_rigid() {
+                // An elastic one for the time, that the grid sees. No Poisson effect: lambda is 0.
+                state.tag &= !RIGID_TAG;
+                state.mu_pa = 0.5 * RIGID_OVER_SOFT * stiffest[&state.object()];
+            }
             let stiffness = state.volume_m3 * (state.lambda_pa + 2.0 * state.mu_pa) / (CFL * self.settings.cell_m).powi(2);
             let weight_ratio = if takes_part { state.mass_kg / stiffness } else { 0.0 };
             // What its law remembers is not asked for meanwhile, and is untouched in the states that go on.

@@ -11,6 +11,9 @@ use glam::{Mat3, Vec3};
 /// Planes of vec4 in each of the two buffers.
 pub(super) const PLANES: usize = 4;
 
+/// Bit of a tag: a rigid body moves the particle.
+pub(super) const RIGID_TAG: u32 = 1 << 31;
+
 /// One particle between two segments.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -27,7 +30,7 @@ pub(super) struct ParticleState {
     pub mu_pa: f32,
     pub lambda_pa: f32,
     pub volume_m3: f32,
-    /// Object in the lower half, row of the substance in the upper.
+    /// Object in the lower half, row of the substance above it; see [`RIGID_TAG`].
     pub tag: u32,
     /// How far from its support it stands, metres; see `REST_CELLS`.
     pub rest_m: f32,
@@ -40,7 +43,12 @@ pub(super) struct ParticleState {
 impl ParticleState {
     /// Row of its substance.
     pub fn substance(&self) -> usize {
-        (self.tag >> 16) as usize
+        (self.tag >> 16 & 0x7fff) as usize
+    }
+
+    /// Whether a rigid body moves it.
+    pub fn is_rigid(&self) -> bool {
+        self.tag & RIGID_TAG != 0
     }
 
     /// Index of its object.
@@ -83,12 +91,13 @@ pub(super) fn initial(particles: &Particles, colliders: &[ColliderRecord], cell_
     }
     for i in 0..n {
         let beside = particles.substances[usize::from(particles.substance[i])].is_sph();
-        let (mu_pa, lambda_pa) = if beside { (0.0, 0.0) } else { particles.lame_pa(i) };
+        let rigid = particles.substances[usize::from(particles.substance[i])].rigid().is_some();
+        let (mu_pa, lambda_pa) = if beside || rigid { (0.0, 0.0) } else { particles.lame_pa(i) };
         let mass_kg = particles.volume_m3[i] * particles.density_kg_m3[i];
         let (x, v) = (particles.position_m[i], particles.velocity_m_s[i]);
         let flows = particles.substances[usize::from(particles.substance[i])].is_liquid();
         let stiff = (mu_pa > 0.0 || flows) && (lambda_pa + 2.0 * mu_pa).is_finite() && lambda_pa + 2.0 * mu_pa > 0.0;
-        let sound = mass_kg > 0.0 && mass_kg.is_finite() && (beside || stiff);
+        let sound = mass_kg > 0.0 && mass_kg.is_finite() && (beside || rigid || stiff);
         if !(x.is_finite() && v.is_finite() && sound && particles.object[i] <= 0xffff) {
             let (e, nu) = (particles.young_pa[i], particles.poisson[i]);
             return refuse(
@@ -104,7 +113,7 @@ pub(super) fn initial(particles: &Particles, colliders: &[ColliderRecord], cell_
             mu_pa,
             lambda_pa,
             volume_m3: particles.volume_m3[i],
-            tag: particles.object[i] | u32::from(particles.substance[i]) << 16,
+            tag: particles.object[i] | u32::from(particles.substance[i]) << 16 | if rigid { RIGID_TAG } else { 0 },
             history: particles.substances[usize::from(particles.substance[i])].first_history(),
             rest_m: if flows { REST_CELLS * cell_m } else { distance_m(colliders, x).clamp(-2.0 * REST_CELLS * cell_m, REST_CELLS * cell_m) },
             ..Default::default()

@@ -66,6 +66,15 @@ pub enum Substance {
         /// Against air.
         surface_tension_n_m: f32,
     },
+    /// Keeps its shape. The particles of one object and one row are one body; rows of one object whose
+    /// particles touch are welded. Moduli are not used. Friction between two things is the root of the
+    /// product of theirs, restitution the larger of theirs.
+    Rigid {
+        /// Coulomb coefficient.
+        friction: f32,
+        /// Share of the approaching speed that is given back, 0 to 1.
+        restitution: f32,
+    },
 }
 
 impl Default for Substance {
@@ -132,6 +141,7 @@ pub(super) const SAND: u32 = 4;
 pub(super) const SNOW: u32 = 5;
 pub(super) const LIQUID: u32 = 6;
 pub(super) const SPH_LIQUID: u32 = 16;
+pub(super) const RIGID: u32 = 8;
 
 impl Substance {
     pub(super) fn record(&self) -> SubstanceRecord {
@@ -148,6 +158,7 @@ impl Substance {
             Substance::Snow { theta_c, theta_s, hardening } => (SNOW, 0, [*theta_c, *theta_s, *hardening]),
             Substance::Liquid { viscosity_pa_s, surface_tension_n_m } => (LIQUID, 0, [*viscosity_pa_s, *surface_tension_n_m, 0.0]),
             Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m } => (SPH_LIQUID, 0, [*viscosity_pa_s, *surface_tension_n_m, 0.0]),
+            Substance::Rigid { friction, restitution } => (RIGID, 0, [*friction, *restitution, 0.0]),
         };
         let [a, b, c] = values;
         SubstanceRecord { kind, model, shown: self.shown_stretch().unwrap_or_default(), values: [a, b, c, 0.0, 0.0, 0.0] }
@@ -157,7 +168,7 @@ impl Substance {
     /// Narrow where matter comes apart, so that no Gaussian becomes a needle.
     pub(super) fn shown_stretch(&self) -> Option<[f32; 2]> {
         match self {
-            Substance::Elastic(_) | Substance::Muscle { .. } => None,
+            Substance::Elastic(_) | Substance::Muscle { .. } | Substance::Rigid { .. } => None,
             Substance::Plastic { .. } => Some([0.3, 3.0]),
             Substance::Viscoplastic { .. } => Some([0.4, 2.5]),
             Substance::Sand { .. } | Substance::Snow { .. } => Some([0.7, 1.4]),
@@ -171,9 +182,17 @@ impl Substance {
         matches!(self, Substance::Liquid { .. })
     }
 
-    /// Whether it needs no law but the elastic one, so that the plain passes do.
-    pub(super) fn is_elastic(&self) -> bool {
-        matches!(self, Substance::Elastic(_)) || self.is_sph()
+    /// Whether the plain passes do, which know nothing but the elastic law; bodies have their own.
+    pub(super) fn is_plain(&self) -> bool {
+        matches!(self, Substance::Elastic(_) | Substance::Rigid { .. }) || self.is_sph()
+    }
+
+    /// Friction and restitution of a rigid one.
+    pub(super) fn rigid(&self) -> Option<(f32, f32)> {
+        match self {
+            Substance::Rigid { friction, restitution } => Some((*friction, *restitution)),
+            _ => None,
+        }
     }
 
     /// Whether it is a liquid of smoothed particles, which has no part in the grid.
@@ -183,7 +202,7 @@ impl Substance {
 
     /// Whether it can stand as captured, under a prestress.
     pub(super) fn can_stand(&self) -> bool {
-        matches!(self, Substance::Elastic(_) | Substance::Muscle { .. } | Substance::Plastic { .. } | Substance::Viscoplastic { .. })
+        !matches!(self, Substance::Sand { .. } | Substance::Snow { .. } | Substance::Liquid { .. })
     }
 
     /// What its law remembers of a past in which nothing happened.
@@ -218,6 +237,7 @@ impl Substance {
         let positive = 0.0..f32::INFINITY;
         let fine = match self {
             Substance::Elastic(_) => true,
+            Substance::Rigid { friction, restitution } => positive.contains(friction) && (0.0..=1.0).contains(restitution),
             Substance::Muscle { fibre, .. } => fibre.is_finite() && *fibre != Vec3::ZERO,
             Substance::Plastic { yield_stress_pa, hardening_pa } => positive.contains(yield_stress_pa) && hardening_pa.is_finite(),
             Substance::Viscoplastic { yield_stress_pa, viscosity_pa_s } => positive.contains(yield_stress_pa) && positive.contains(viscosity_pa_s),

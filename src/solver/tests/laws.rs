@@ -217,7 +217,7 @@ fn answers_agree(substances: &[Substance]) {
             assert_eq!(count, 400);
             continue;
         }
-        let solid = substance.is_elastic() || matches!(substance, Substance::Muscle { .. });
+        let solid = substance.is_plain() || matches!(substance, Substance::Muscle { .. });
         assert!(if solid { count == 0 } else { (60..400).contains(&count) }, "{substance:?}: {count} yielded");
     }
 }

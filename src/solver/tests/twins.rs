@@ -165,7 +165,7 @@ fn follows_the_twins(substances: [Substance; 2]) {
     let b = &bound[solver.current];
 
     // Logarithms and the hardening of snow lose digits; the rotation of what is inside out is found by turns that come to it slowly.
-    let exact = if substances.iter().all(Substance::is_elastic) { 1e-5 } else { 2e-4 };
+    let exact = if substances.iter().all(Substance::is_plain) { 1e-5 } else { 2e-4 };
     // What was inside out or flat is neither any more when a liquid has answered.
     let exact = if substances.iter().any(Substance::is_liquid) { 5e-4 } else { exact };
     let tolerance = |s: &ParticleState| if s.f().determinant() < crate::solver::constants::FLAT { 2e-3 } else { exact };

@@ -39,7 +39,10 @@ quick_cases! {
     a_bending_bar: "bending bar";
     v7_column: "V7";
     v8_wave_in_a_bar: "V8";
+    v9_bouncing_ball: "V9";
+    v10_rigid_block_and_ball_on_a_slope: "V10";
     v11_block_on_a_slope: "V11";
+    v12_cradle: "V12";
     v13_incline: "V13";
     v16_tension: "V16";
     bingham_flows: "Bingham";
@@ -53,6 +56,8 @@ quick_cases! {
     v18_dam_break_of_particles: "V18 SPH";
     v19_pool_of_particles: "V19 SPH";
     v20_channel_of_particles: "V20 SPH";
+    v24_ball_into_jelly: "V24";
+    v25_joint: "V25";
     v26_same_bits: "V26";
     drag: "drag";
     spring: "spring";

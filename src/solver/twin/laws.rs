@@ -113,6 +113,8 @@ pub fn respond(substance: &Substance, trial: DMat3, m: &Matter, dt_s: f64) -> An
         // No particle of it is ever asked.
         Substance::SphLiquid { .. } => Answer { f: trial, history: m.history, tau: DMat3::ZERO },
         Substance::Elastic(model) => Answer { f: trial, history: m.history, tau: elastic(model) },
+        // Bodies move their particles; no stress acts on them.
+        Substance::Rigid { .. } => Answer { f: trial, history: m.history, tau: DMat3::ZERO },
         Substance::Muscle { model, fibre, .. } => {
             let fibre = trial * fibre.as_dvec3().normalize();
             Answer { f: trial, history: m.history, tau: elastic(model) + outer(fibre, fibre) * (young * m.activation) }

@@ -92,7 +92,7 @@ pub fn stress(states: &mut [ParticleState], around: &Surroundings, dt_s: f32) {
 pub fn p2g(states: &[ParticleState], around: &Surroundings) -> Grid {
     let (params, ground) = (&around.params, around.params.has_ground as usize);
     let mut grid = Grid::new();
-    for s in states {
+    for s in states.iter().filter(|s| !s.is_rigid()) {
         let found = [nearest(s, &around.colliders[..ground], 0, params), nearest(s, &around.colliders[ground..], ground, params)];
         let a = affine(s) * f64::from(params.cell_m);
         for (node, weight, d) in stencil(s.position_m, params) {
@@ -197,7 +197,7 @@ pub fn gather(grid: &Grid, x: Vec3, params: &Params) -> (DVec3, DMat3) {
 /// `g2p.wgsl`: moves and deforms the particles, and prepares the stress of the next substep.
 pub fn g2p(states: &mut [ParticleState], grid: &Grid, around: &Surroundings, dt_s: f32, dt_next_s: f32) {
     let params = &around.params;
-    for s in states {
+    for s in states.iter_mut().filter(|s| !s.is_rigid()) {
         let (v, gradient) = gather(grid, s.position_m, params);
         let mut x = s.position_m + v.as_vec3() * dt_s;
         let mut v = v.as_vec3() + around.accelerations[s.object() as usize] * dt_s;

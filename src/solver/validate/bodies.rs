@@ -34,17 +34,63 @@ pub(in crate::solver) fn block(low_m: Vec3, size_m: Vec3, spacing_m: f32, young_
 
 /// Adds a body of another object and substance.
 pub(in crate::solver) fn append(to: &mut Particles, from: Particles, substance: Substance) {
-    let n = from.len();
-    let object = to.object.iter().max().map_or(0, |o| o + 1);
-    to.position_m.extend(from.position_m);
-    to.velocity_m_s.extend(from.velocity_m_s);
-    to.volume_m3.extend(from.volume_m3);
-    to.density_kg_m3.extend(from.density_kg_m3);
-    to.young_pa.extend(from.young_pa);
-    to.poisson.extend(from.poisson);
-    to.substance.extend(vec![to.substances.len() as u16; n]);
-    to.substances.push(substance);
-    to.object.extend(vec![object; n]);
+    let one = Particles { substance: vec![0; from.len()], substances: vec![substance], object: vec![0; from.len()], ..from };
+    *to = joined(std::mem::take(to), one);
+}
+
+/// A ball filled at a spacing, 1000 kg/m^3; particles at its surface have the volume of their share of it
+/// and stand at the middle of that share.
+pub(in crate::solver) fn ball(centre_m: Vec3, radius_m: f32, spacing_m: f32) -> Particles {
+    const PROBES: i32 = 8;
+    let reach = (radius_m / spacing_m).ceil() as i32;
+    let (mut position_m, mut volume_m3) = (Vec::new(), Vec::new());
+    let at = |k: i32, of: i32| (k as f32 + 0.5) / of as f32;
+    for cell in 0..(2 * reach).pow(3) {
+        let side = 2 * reach;
+        let low = glam::IVec3::new(cell % side, cell / side % side, cell / side / side) - reach;
+        let probes = (0..PROBES.pow(3)).map(|p| {
+            let inner = Vec3::new(at(p % PROBES, PROBES), at(p / PROBES % PROBES, PROBES), at(p / PROBES / PROBES, PROBES));
+            (low.as_vec3() + inner) * spacing_m
+        });
+        let inside: Vec<Vec3> = probes.filter(|p| p.length() < radius_m).collect();
+        if inside.len() >= 16 {
+            position_m.push(centre_m + inside.iter().sum::<Vec3>() / inside.len() as f32);
+            volume_m3.push(spacing_m.powi(3) * inside.len() as f32 / PROBES.pow(3) as f32);
+        }
+    }
+    let n = position_m.len();
+    Particles {
+        position_m,
+        velocity_m_s: vec![Vec3::ZERO; n],
+        volume_m3,
+        density_kg_m3: vec![1000.0; n],
+        young_pa: vec![1e5; n],
+        poisson: vec![0.3; n],
+        substance: vec![0; n],
+        substances: vec![Substance::default()],
+        object: vec![0; n],
+    }
+}
+
+/// The same particles as one rigid body.
+pub(in crate::solver) fn rigid(particles: Particles, friction: f32, restitution: f32) -> Particles {
+    Particles { substances: vec![Substance::Rigid { friction, restitution }], ..particles }
+}
+
+/// Two scenes in one; the second's objects and substances come after the first's.
+pub(in crate::solver) fn joined(mut one: Particles, other: Particles) -> Particles {
+    let objects = one.object.iter().max().map_or(0, |o| o + 1);
+    let rows = one.substances.len() as u16;
+    one.position_m.extend(other.position_m);
+    one.velocity_m_s.extend(other.velocity_m_s);
+    one.volume_m3.extend(other.volume_m3);
+    one.density_kg_m3.extend(other.density_kg_m3);
+    one.young_pa.extend(other.young_pa);
+    one.poisson.extend(other.poisson);
+    one.substance.extend(other.substance.iter().map(|row| row + rows));
+    one.substances.extend(other.substances);
+    one.object.extend(other.object.iter().map(|object| object + objects));
+    one
 }
 
 /// A box filled at a spacing with a liquid.
@@ -84,7 +130,7 @@ pub(super) fn centre_m(states: &[ParticleState]) -> DVec3 {
 
 /// Total angular momentum about a point, with what APIC keeps in the affine part: a quarter of the
 /// cell squared times the axial vector of mass C (Jiang et al. 2015, section 5.3.2).
-pub(super) fn angular_momentum(states: &[ParticleState], about_m: DVec3, cell_m: f32) -> DVec3 {
+pub(in crate::solver) fn angular_momentum(states: &[ParticleState], about_m: DVec3, cell_m: f32) -> DVec3 {
     let quarter = 0.25 * f64::from(cell_m).powi(2);
     let of = |s: &ParticleState| {
         let a = s.affine.map(f64::from);

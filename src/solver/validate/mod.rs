@@ -12,14 +12,17 @@ mod loaded;
 mod muscles;
 mod pulled;
 mod repeat;
+mod rigid;
 mod sliding;
 mod sph;
 mod waves;
 
 #[cfg(test)]
-pub(super) use bodies::{append, block, pool};
+pub(super) use bodies::{append, ball, block, joined, pool, rigid as rigid_body};
 #[cfg(test)]
 pub(super) use captured::stems;
+#[cfg(test)]
+pub(super) use rigid::momenta;
 
 use super::types::SolverError;
 use crate::gpu::Gpu;
@@ -118,7 +121,10 @@ pub const CASES: &[Case] = &[
     Case { name: "bending bar", quick: true, run: free::bending_bar },
     Case { name: "V7", quick: true, run: loaded::column },
     Case { name: "V8", quick: true, run: waves::bar },
+    Case { name: "V9", quick: true, run: rigid::bounce },
+    Case { name: "V10", quick: true, run: rigid::incline },
     Case { name: "V11", quick: true, run: sliding::incline },
+    Case { name: "V12", quick: true, run: rigid::cradle },
     Case { name: "V13", quick: true, run: grains::incline },
     Case { name: "V13 slope at rest", quick: false, run: grains::repose },
     Case { name: "V14", quick: false, run: grains::slab },
@@ -143,6 +149,9 @@ pub const CASES: &[Case] = &[
     Case { name: "spring", quick: true, run: driven::spring },
     Case { name: "swirl", quick: true, run: driven::vortex },
     Case { name: "fields", quick: true, run: driven::same_bits },
+    Case { name: "V24", quick: true, run: rigid::into_jelly },
+    Case { name: "V25", quick: true, run: rigid::joint },
+    Case { name: "stack", quick: false, run: rigid::stack },
     Case { name: "left alone", quick: false, run: captured::left_alone },
     Case { name: "dropped", quick: false, run: captured::dropped },
 ];

@@ -1,0 +1,27 @@
+// What pins hold, still or moving.
+struct Pin {
+    // As a collider's; w of `at`: 0 half-space, 1 box, 2 capsule or sphere.
+    at: vec4<f32>,
+    shape: vec4<f32>,
+    // Box that it is limited to.
+    low: vec4<f32>,
+    high: vec4<f32>,
+    // How far it has been taken at the start of the segment, and its velocity.
+    shift: vec4<f32>,
+    velocity: vec4<f32>,
+}
+
+// The velocity that a pin gives a node, and 1; zeros where none holds it.
+fn pinned(x: vec3<f32>) -> vec4<f32> {
+    for (var p = 0u; p < params.pin_count; p++) {
+        let pin = pins[p];
+        let place = x - (pin.shift.xyz + substep.since_s * pin.velocity.xyz);
+        if (any(place < pin.low.xyz) || any(place > pin.high.xyz)) {
+            continue;
+        }
+        if (touch(Collider(pin.at, pin.shape, vec4<f32>(0.0)), place).distance_m <= 0.0) {
+            return vec4<f32>(pin.velocity.xyz, 1.0);
+        }
+    }
+    return vec4<f32>(0.0);
+}

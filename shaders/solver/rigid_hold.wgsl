@@ -1,0 +1,38 @@
+// Start of a segment: a body with a point in a pin is held by it, still or along its path, and one that
+// no pin reaches is free.
+
+@group(0) @binding(0) var<storage, read> params: Params;
+@group(0) @binding(1) var<storage, read> pins: array<Pin>;
+@group(0) @binding(2) var<storage, read_write> bodies: array<Body>;
+@group(0) @binding(3) var<storage, read> shapes: array<Shape>;
+@group(0) @binding(4) var<storage, read> points: array<vec4<f32>>;
+var<immediate> substep: Substep;
+
+// The first point that is held.
+var<workgroup> found: atomic<u32>;
+
+fn place_of(b: u32, p: u32) -> vec3<f32> {
+    return bodies[b].centre.xyz + turned(bodies[b].turn, points[shapes[b].first_point + p].xyz);
+}
+
+@compute @workgroup_size(RIGID_LANES)
+fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
+    let b = group.x;
+    if (lane == 0u) {
+        atomicStore(&found, 0xffffffffu);
+    }
+    workgroupBarrier();
+    for (var p = lane; p < shapes[b].points; p += RIGID_LANES) {
+        if (pinned(place_of(b, p)).w > 0.0) {
+            atomicMin(&found, p);
+        }
+    }
+    workgroupBarrier();
+    if (lane == 0u) {
+        let first = atomicLoad(&found);
+        bodies[b].velocity.w = 0.0;
+        if (first != 0xffffffffu) {
+            bodies[b].velocity = pinned(place_of(b, first));
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! The exchange of bodies and soft matter in plain Rust, on the map of nodes of the solver's own twin.
+
+use super::{World, spin_of, turn, xyz};
+use crate::solver::constants::{REST_CELLS, RIGID_LANES};
+use crate::solver::core::Params;
+use crate::solver::rigid::body::Body;
+use crate::solver::state::ParticleState;
+use crate::solver::twin::{self, Grid};
+use glam::{DMat3, DVec3, Vec3};
+use std::collections::BTreeMap;
+
+/// What particles leave at a node.
+#[derive(Clone, Copy, Debug, Default)]
+struct Near {
+    rigid_kg: f64,
+    /// Gap and body of the nearest soft particle.
+    contact: Option<(f32, usize)>,
+    bond: Option<usize>,
+}
+
+/// A node that meets a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Meeting {
+    pub body: usize,
+    /// Zero where it is bonded.
+    pub normal: Vec3,
+    allowed_m_s: f32,
+    rigid_kg: f64,
+    impulse: DVec3,
+}
+
+type Nodes = BTreeMap<[i32; 3], Near>;
+
+/// What comes of it.
+pub struct Exchange {
+    pub meetings: BTreeMap<[i32; 3], Meeting>,
+    /// Velocity and spin that each body will have.
+    pub predicted: Vec<(DVec3, DVec3)>,
+    /// Momentum and angular momentum that each body is given.
+    pub given: Vec<(DVec3, DVec3)>,
+}
+
+fn place_of(node: &[i32; 3], params: &Params) -> Vec3 {
+    Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * params.cell_m
+}
+
+impl World<'_> {
+    /// All passes of the exchange; the nodes' momenta change.
+    pub fn exchange(&self, bodies: &[Body], states: &[ParticleState], grid: &mut Grid, params: &Params) -> Exchange {
+        let nears = self.nears(bodies, states, grid, params);
+        let mut meetings = self.meetings(bodies, &nears, grid, params);
+        let predicted = self.predicted(bodies, &meetings, grid, params);
+        self.couple(bodies, &predicted, &mut meetings, grid, params);
+        let mut given = vec![(DVec3::ZERO, DVec3::ZERO); bodies.len()];
+        self.members(bodies, &meetings, params, |b, share, _, meeting, r| {
+            given[b].0 += meeting.impulse * share;
+            given[b].1 += r.cross(meeting.impulse * share);
+        });
+        Exchange { meetings, predicted, given }
+    }
+
+    /// `rigid_share.wgsl` and `rigid_mark.wgsl`.
+    fn nears(&self, bodies: &[Body], states: &[ParticleState], grid: &Grid, params: &Params) -> Nodes {
+        let mut nears = Nodes::new();
+        for (k, member) in self.all.members.iter().enumerate().filter(|(_, m)| m[3] > 0.0) {
+            let body = &bodies[self.all.owners[k / RIGID_LANES as usize] as usize];
+            for (node, weight, _) in twin::stencil(xyz(&body.centre_m) + turn(body) * xyz(member), params) {
+                if grid.contains_key(&node) {
+                    nears.entry(node).or_default().rigid_kg += f64::from(weight * member[3]);
+                }
+            }
+        }
+        for s in states.iter().filter(|s| !s.is_rigid()) {
+            self.mark(bodies, s, &mut nears, params);
+        }
+        nears
+    }
+
+    fn mark(&self, bodies: &[Body], s: &ParticleState, nears: &mut Nodes, params: &Params) {
+        let (mut contact, mut bond): (Option<(f32, usize, Vec3)>, Option<usize>) = (None, None);
+        for (b, (body, shape)) in bodies.iter().zip(&self.all.shapes).enumerate() {
+            let d = s.position_m - xyz(&body.centre_m);
+            if d.length() > shape.radius_m + 2.0 * params.cell_m {
+                continue;
+            }
+            let level = self.all.fields[b].at(turn(body).inverse() * d);
+            let gap_m = level.distance_m - REST_CELLS * params.cell_m;
+            if shape.object == s.object() {
+                bond = if level.distance_m < 2.0 * params.cell_m { Some(b) } else { bond };
+            } else if gap_m < params.reach_m && contact.is_none_or(|c| gap_m < c.0) {
+                contact = Some((gap_m, b, turn(body) * level.gradient.normalize()));
+            }
+        }
+        for (node, _, d) in twin::stencil(s.position_m, params) {
+            let near = nears.entry(node).or_default();
+            if let Some((gap_m, b, _)) = contact.filter(|c| c.2.dot(d) <= 0.5 && near.contact.is_none_or(|n| c.0 < n.0)) {
+                near.contact = Some((gap_m, b));
+            }
+            near.bond = near.bond.max(bond);
+        }
+    }
+
+    /// `rigid_touch.wgsl`.
+    fn meetings(&self, bodies: &[Body], nears: &Nodes, grid: &Grid, params: &Params) -> BTreeMap<[i32; 3], Meeting> {
+        let mut meetings = BTreeMap::new();
+        for (node, near) in nears.iter().filter(|(_, n)| n.rigid_kg > 0.0) {
+            let Some(soft) = grid.get(node) else { continue };
+            let meeting = |body, normal, allowed_m_s| Meeting { body, normal, allowed_m_s, rigid_kg: near.rigid_kg, impulse: DVec3::ZERO };
+            if let Some(b) = near.bond.filter(|_| near.rigid_kg >= 0.25 * soft.mass) {
+                meetings.insert(*node, meeting(b, Vec3::ZERO, 0.0));
+            } else if let Some((gap_m, b)) = near.contact {
+                let gap_m = gap_m.max(-params.reach_m);
+                let x = place_of(node, params);
+                let body = &bodies[b];
+                let level = self.all.fields[b].at(turn(body).inverse() * (x - xyz(&body.centre_m)));
+                let normal = turn(body) * level.gradient.normalize();
+                let allowed = if gap_m < 0.0 { (-0.1 * gap_m / self.dt_s).min(10.0 * params.cell_m) } else { -gap_m / self.dt_s };
+                let arm = x - xyz(&body.centre_m);
+                let own = xyz(&body.velocity_m_s) + spin_of(&self.all.shapes[b], turn(body), xyz(&body.angular_momentum)).cross(arm);
+                if ((soft.momentum / soft.mass).as_vec3() - own).dot(normal) < allowed {
+                    meetings.insert(*node, meeting(b, normal, allowed));
+                }
+            }
+        }
+        meetings
+    }
+
+    /// Every member's share of every meeting that it reaches: body, share, node, meeting, arm.
+    fn members(
+        &self,
+        bodies: &[Body],
+        meetings: &BTreeMap<[i32; 3], Meeting>,
+        params: &Params,
+        mut act: impl FnMut(usize, f64, &[i32; 3], &Meeting, DVec3),
+    ) {
+        for (k, member) in self.all.members.iter().enumerate().filter(|(_, m)| m[3] > 0.0) {
+            let b = self.all.owners[k / RIGID_LANES as usize] as usize;
+            let x = xyz(&bodies[b].centre_m) + turn(&bodies[b]) * xyz(member);
+            for (node, weight, _) in twin::stencil(x, params) {
+                if let Some(meeting) = meetings.get(&node) {
+                    let arm = (place_of(&node, params) - xyz(&bodies[b].centre_m)).as_dvec3();
+                    act(b, f64::from(weight * member[3]) / meeting.rigid_kg, &node, meeting, arm);
+                }
+            }
+        }
+    }
+
+    /// `rigid_predict.wgsl` and `rigid_meet.wgsl`: each body and its nodes as one rigid thing.
+    fn predicted(&self, bodies: &[Body], meetings: &BTreeMap<[i32; 3], Meeting>, grid: &Grid, params: &Params) -> Vec<(DVec3, DVec3)> {
+        let cross = |r: DVec3| DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0));
+        let own = |(body, shape): (&Body, &super::Shape)| {
+            let r = DMat3::from_quat(turn(body).as_dquat());
+            let mass = f64::from(shape.mass_kg());
+            let inertia = r * shape.inertia().as_dmat3() * r.transpose();
+            (mass, DVec3::ZERO, inertia, xyz(&body.velocity_m_s).as_dvec3() * mass, xyz(&body.angular_momentum).as_dvec3())
+        };
+        let mut sums: Vec<_> = bodies.iter().zip(&self.all.shapes).map(own).collect();
+        self.members(bodies, meetings, params, |b, share, node, _, r| {
+            let (m, p) = (grid[node].mass * share, grid[node].momentum * share);
+            sums[b].0 += m;
+            sums[b].1 += r * m;
+            sums[b].2 -= cross(r) * cross(r) * m;
+            sums[b].3 += p;
+            sums[b].4 += r.cross(p);
+        });
+        sums.iter()
+            .map(|(mass, moment, inertia, p, l)| {
+                let about = *inertia + cross(*moment) * cross(*moment) * (1.0 / mass);
+                let omega = about.inverse() * (*l - moment.cross(*p) / *mass);
+                ((*p - omega.cross(*moment)) / *mass, omega)
+            })
+            .collect()
+    }
+
+    /// `rigid_couple.wgsl`.
+    fn couple(&self, bodies: &[Body], predicted: &[(DVec3, DVec3)], meetings: &mut BTreeMap<[i32; 3], Meeting>, grid: &mut Grid, params: &Params) {
+        meetings.retain(|node, meeting| {
+            let Some(soft) = grid.get_mut(node) else { return false };
+            let v = soft.momentum / soft.mass;
+            let (velocity, omega) = predicted[meeting.body];
+            let body_v = velocity + omega.cross((place_of(node, params) - xyz(&bodies[meeting.body].centre_m)).as_dvec3());
+            let mut after = body_v;
+            if meeting.normal != Vec3::ZERO {
+                let (normal, allowed) = (meeting.normal.as_dvec3(), f64::from(meeting.allowed_m_s));
+                let approach = (v - body_v).dot(normal);
+                if approach >= allowed {
+                    return false;
+                }
+                let sliding = v - body_v - normal * approach;
+                let grip = f64::from(self.all.shapes[meeting.body].friction) * (allowed - approach);
+                after += normal * allowed + sliding * (1.0 - grip / sliding.length().max(1e-20)).max(0.0);
+            }
+            meeting.impulse = (v - after) * soft.mass;
+            soft.momentum -= meeting.impulse;
+            true
+        });
+    }
+}
