@@ -1,7 +1,10 @@
-// What every pass of the solver shares: the step's parameters, the window of the lattice, the spline.
+// What every pass of the solver shares: the step's parameters, where the grid's blocks are stored, the
+// spline.
 //
 // Node i of the lattice stands at i * cell_m, whatever the window: moving the window moves no node.
-// Storage is block-linear, blocks of 4^3 nodes, x fastest, so that an index is a sum over the axes.
+// Only blocks of 4^3 nodes that particles may reach are stored, those of each layer apart. A node's index
+// is that of its block times 64 and its place in the block, x fastest. Block 0 is the empty one: it
+// stands for all that are not stored, and nothing but zeros is ever found there.
 
 struct Params {
     // First lattice node of the window, each coordinate a multiple of 4.
@@ -42,17 +45,32 @@ struct Params {
     has_liquid: u32,
     // Layers of the grid: how many groups of objects have velocities of their own.
     layers: u32,
+    // 1 where the first layer also stores the blocks of all others: liquids share it.
+    pools: u32,
+    // Where each block of the window is stored, layer after layer.
+    slots: array<u32>,
 }
 
-// Offset in nodes of one axis' coordinate within the block-linear storage; the three axes add up.
-fn axis_offsets(cell: vec3<u32>) -> vec3<u32> {
-    let block = cell >> vec3<u32>(2u);
+// The layer of a particle's object.
+fn layer_of(tag: u32) -> u32 {
+    return (tag & 0xffffu) % params.layers;
+}
+
+// The layer whose blocks a particle is sorted into: where there are liquids beside the grid, who look for
+// neighbours among all particles, the first.
+fn sorted_into(tag: u32) -> u32 {
+    return select(layer_of(tag), 0u, params.has_liquid != 0u);
+}
+
+// Number of a block of a layer within the window, whether it is stored or not.
+fn block_number(block: vec3<u32>, layer: u32) -> u32 {
+    return ((layer * params.blocks.z + block.z) * params.blocks.y + block.y) * params.blocks.x + block.x;
+}
+
+// Where a cell, or the node at its lowest corner, is stored.
+fn stored(cell: vec3<u32>, layer: u32) -> u32 {
     let inner = cell & vec3<u32>(3u);
-    return vec3<u32>(
-        block.x * 64u + inner.x,
-        block.y * (params.blocks.x * 64u) + inner.y * 4u,
-        block.z * (params.blocks.x * params.blocks.y * 64u) + inner.z * 16u,
-    );
+    return params.slots[block_number(cell >> vec3<u32>(2u), layer)] * 64u + inner.z * 16u + inner.y * 4u + inner.x;
 }
 
 // First of the three lattice nodes that a quadratic spline at x reaches along each axis.
@@ -66,18 +84,30 @@ fn in_window(first: vec3<i32>) -> bool {
     return all(first >= vec3<i32>(1)) && all(first <= last);
 }
 
-// The 3^3 nodes that a particle exchanges with: weights of the quadratic B-spline and offsets in
-// storage along each axis, the particle's place from the first node in cells.
+// The 3^3 nodes that a particle exchanges with: weights of the quadratic B-spline, the particle's place
+// from the first node in cells, and where the nodes are stored. They lie in two blocks along each axis, a
+// near and a far one, which may be the same.
 struct Stencil {
     wx: vec3<f32>,
     wy: vec3<f32>,
     wz: vec3<f32>,
+    place: vec3<f32>,
+    // First node, from the window's.
+    cell: vec3<u32>,
+    // The nodes' places within their blocks.
     ox: vec3<u32>,
     oy: vec3<u32>,
     oz: vec3<u32>,
-    place: vec3<f32>,
+    // Whether they are in the far block: 1 along x and y, 2 along z.
+    fx: vec3<u32>,
+    fy: vec3<u32>,
+    fz: vec3<u32>,
+    // First nodes of the blocks that are near along x and of those that are far, (fy + fz) by (fy + fz).
+    near: vec4<u32>,
+    far: vec4<u32>,
 }
 
+// In the first layer; `cell` is the first node, from the window's.
 fn stencil(x: vec3<f32>, base: vec3<i32>, cell: vec3<u32>) -> Stencil {
     let place = x * params.per_m - vec3<f32>(base);
     let a = vec3<f32>(1.5) - place;
@@ -86,29 +116,42 @@ fn stencil(x: vec3<f32>, base: vec3<i32>, cell: vec3<u32>) -> Stencil {
     let w0 = 0.5 * a * a;
     let w1 = vec3<f32>(0.75) - b * b;
     let w2 = 0.5 * c * c;
-    let o0 = axis_offsets(cell);
-    let o1 = axis_offsets(cell + vec3<u32>(1u));
-    let o2 = axis_offsets(cell + vec3<u32>(2u));
-    return Stencil(
+    let first = cell & vec3<u32>(3u);
+    let steps = vec3<u32>(0u, 1u, 2u);
+    let nx = first.x + steps;
+    let ny = first.y + steps;
+    let nz = first.z + steps;
+    let s = Stencil(
         vec3<f32>(w0.x, w1.x, w2.x),
         vec3<f32>(w0.y, w1.y, w2.y),
         vec3<f32>(w0.z, w1.z, w2.z),
-        vec3<u32>(o0.x, o1.x, o2.x),
-        vec3<u32>(o0.y, o1.y, o2.y),
-        vec3<u32>(o0.z, o1.z, o2.z),
         place,
+        cell,
+        nx & vec3<u32>(3u),
+        (ny & vec3<u32>(3u)) * 4u,
+        (nz & vec3<u32>(3u)) * 16u,
+        nx >> vec3<u32>(2u),
+        ny >> vec3<u32>(2u),
+        (nz >> vec3<u32>(2u)) * 2u,
+        vec4<u32>(0u),
+        vec4<u32>(0u),
     );
-}
-
-// Nodes of one layer of the grid; the layers lie one after another.
-fn layer_nodes() -> u32 {
-    return params.blocks.x * params.blocks.y * params.blocks.z * 64u;
+    return in_layer(s, 0u);
 }
 
 // The same nodes in the layer of a particle's object.
 fn in_layer(s: Stencil, tag: u32) -> Stencil {
     var own = s;
-    own.oz += vec3<u32>((tag & 0xffffu) % params.layers * layer_nodes());
+    let near = s.cell >> vec3<u32>(2u);
+    let far = (s.cell + vec3<u32>(2u)) >> vec3<u32>(2u);
+    let layer = layer_of(tag);
+    let nn = block_number(near, layer);
+    let fa = block_number(vec3<u32>(near.x, far.y, near.z), layer);
+    let nf = block_number(vec3<u32>(near.xy, far.z), layer);
+    let ff = block_number(vec3<u32>(near.x, far.yz), layer);
+    let across = far.x - near.x;
+    own.near = 64u * vec4<u32>(params.slots[nn], params.slots[fa], params.slots[nf], params.slots[ff]);
+    own.far = 64u * vec4<u32>(params.slots[nn + across], params.slots[fa + across], params.slots[nf + across], params.slots[ff + across]);
     return own;
 }
 
@@ -119,6 +162,10 @@ fn pick(v: vec3<f32>, k: u32) -> f32 {
 
 fn pick_offset(v: vec3<u32>, k: u32) -> u32 {
     return select(select(v.z, v.y, k == 1u), v.x, k == 0u);
+}
+
+fn pick_block(v: vec4<u32>, k: u32) -> u32 {
+    return select(select(v.w, v.z, k == 2u), select(v.y, v.x, k == 0u), k < 2u);
 }
 
 // A row of three nodes along x: their weights, where they are stored, how far they are in y and z.
@@ -133,8 +180,10 @@ fn row(s: Stencil, number: u32) -> Row {
     let y = number % 3u;
     let z = number / 3u;
     let weights = s.wx * (pick(s.wy, y) * pick(s.wz, z));
-    let nodes = s.ox + vec3<u32>(pick_offset(s.oy, y) + pick_offset(s.oz, z));
-    return Row(weights, nodes, f32(y) - s.place.y, f32(z) - s.place.z);
+    let beside = pick_offset(s.fy, y) + pick_offset(s.fz, z);
+    let inner = pick_offset(s.oy, y) + pick_offset(s.oz, z);
+    let blocks = select(vec3<u32>(pick_block(s.near, beside)), vec3<u32>(pick_block(s.far, beside)), s.fx == vec3<u32>(1u));
+    return Row(weights, blocks + s.ox + vec3<u32>(inner), f32(y) - s.place.y, f32(z) - s.place.z);
 }
 
 // NaN and infinities by their bits: a comparison with itself is folded away by compilers.

@@ -29,6 +29,8 @@ struct Control {
     wave_speed: atomic<u32>,
     // 1 where a list of neighbours was too short.
     crowded: atomic<u32>,
+    // Most blocks that the grid was asked to store.
+    blocks: atomic<u32>,
 }
 
 // Power of two that brings momenta up to `largest` to `momentum_bits`.

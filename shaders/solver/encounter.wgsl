@@ -28,15 +28,10 @@ struct Side {
 
 // Gradient of a layer's mass: central differences, smoothed (1 2 1) / 4 across.
 fn mass_slope(layer: u32, cell: vec3<i32>) -> vec3<f32> {
-    let start = layer * layer_nodes();
-    let most = vec3<i32>(params.blocks * 4u) - vec3<i32>(1);
     var sum = vec3<f32>(0.0);
     for (var k = 0u; k < 27u; k++) {
-        let step = vec3<i32>(vec3<u32>(k % 3u, k / 3u % 3u, k / 9u)) - vec3<i32>(1);
-        let offsets = axis_offsets(vec3<u32>(clamp(cell + step, vec3<i32>(0), most)));
-        let s = vec3<f32>(step);
-        let across = vec3<f32>(1.0) - 0.5 * abs(s);
-        sum += s * across.yzx * across.zxy * (0.125 * abs(masses[start + offsets.x + offsets.y + offsets.z]));
+        let step = step_of(k);
+        sum += slope(step) * abs(masses[beside(Node(0u, cell, layer), step)]);
     }
     return sum;
 }
@@ -90,11 +85,17 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     if (place >= active_blocks[0]) {
         return;
     }
-    let block = active_blocks[1u + place];
+    let own = node_of(place, lane);
+    // The first layer that has this block speaks for all.
+    for (var layer = 0u; layer < own.layer; layer++) {
+        if (stored(vec3<u32>(own.cell), layer) >= 64u) {
+            return;
+        }
+    }
     var sides: array<Side, MOST_LAYERS>;
     var count = 0u;
-    for (var layer = 0u; layer < params.layers; layer++) {
-        let node = layer * layer_nodes() + block * 64u + lane;
+    for (var layer = own.layer; layer < params.layers; layer++) {
+        let node = stored(vec3<u32>(own.cell), layer);
         let mass = masses[node];
         if (mass != 0.0) {
             sides[count] = Side(layer, node, velocity[node].xyz, abs(mass), select(0.0, 1.0 / mass, mass > 0.0), vec3<f32>(0.0));
@@ -104,10 +105,8 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     if (count < 2u) {
         return;
     }
-    let in_block = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
-    let across = vec3<u32>(block % params.blocks.x, (block / params.blocks.x) % params.blocks.y, block / (params.blocks.x * params.blocks.y));
     for (var k = 0u; k < count; k++) {
-        sides[k].slope = mass_slope(sides[k].layer, vec3<i32>(across * 4u + in_block));
+        sides[k].slope = mass_slope(sides[k].layer, own.cell);
     }
     // What one pair settles another may upset.
     let rounds = select(MEETING_ROUNDS, 1u, count == 2u);

@@ -52,8 +52,8 @@ fn weigh(node: u32, mass: f32) {
     }
 }
 
-// One node of one layer; `place` is the node in the first.
-fn settle(node: u32, place: u32, x: vec3<f32>) {
+fn settle(at: Node) {
+    let node = at.index;
     let sum = sums[node];
     if (sum.w <= 0) {
         if (any(sum != vec4<i32>(0))) {
@@ -72,7 +72,8 @@ fn settle(node: u32, place: u32, x: vec3<f32>) {
     }
     let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
     var v = vec3<f32>(sum.xyz) * (params.mass_units / momentum_unit) / f32(sum.w);
-    let wet = liquid_pull(place);
+    let x = position_of(at);
+    let wet = liquid_pull(at);
     v += substep.dt_s * (params.gravity_m_s2 + wet.xyz);
     var held = 0.0;
     var mass = f32(sum.w);
@@ -104,11 +105,5 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     if (place >= active_blocks[0]) {
         return;
     }
-    let block = active_blocks[1u + place];
-    let in_block = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
-    let across = vec3<u32>(block % params.blocks.x, (block / params.blocks.x) % params.blocks.y, block / (params.blocks.x * params.blocks.y));
-    let x = vec3<f32>(params.origin + vec3<i32>(across * 4u + in_block)) * params.cell_m;
-    for (var layer = 0u; layer < params.layers; layer++) {
-        settle(layer * layer_nodes() + block * 64u + lane, block * 64u + lane, x);
-    }
+    settle(node_of(place, lane));
 }

@@ -1,5 +1,5 @@
 // Where nothing is liquid.
 
-fn liquid_pull(node: u32) -> vec4<f32> {
+fn liquid_pull(node: Node) -> vec4<f32> {
     return vec4<f32>(0.0);
 }

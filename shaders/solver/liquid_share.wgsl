@@ -26,7 +26,10 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     if (place >= active_blocks[0]) {
         return;
     }
-    let node = node_of(active_blocks[1u + place], lane);
+    let node = node_of(place, lane);
+    if (node.layer != 0u) {
+        return;
+    }
     let k = 3u * node.index;
     let poured = vec3<f32>(vec3<i32>(fill[k], fill[k + 1u], fill[k + 2u]));
     fill[k] = 0;

@@ -11,7 +11,10 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     if (place >= active_blocks[0]) {
         return;
     }
-    let node = node_of(active_blocks[1u + place], lane);
+    let node = node_of(place, lane);
+    if (node.layer != 0u) {
+        return;
+    }
     let here = share[node.index].x;
     var gradient = vec3<f32>(0.0);
     for (var k = 0u; k < 27u; k++) {

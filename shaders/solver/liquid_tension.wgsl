@@ -24,7 +24,10 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     if (place >= active_blocks[0]) {
         return;
     }
-    let node = node_of(active_blocks[1u + place], lane);
+    let node = node_of(place, lane);
+    if (node.layer != 0u) {
+        return;
+    }
     let here = share[node.index];
     let normal = normal_at(node.index);
     if (here.y <= 0.0 || all(normal == vec3<f32>(0.0))) {

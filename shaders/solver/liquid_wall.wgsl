@@ -23,15 +23,11 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     if (place >= active_blocks[0]) {
         return;
     }
-    let node = node_of(active_blocks[1u + place], lane);
-    for (var layer = 0u; layer < params.layers; layer++) {
-        hold(node, layer * layer_nodes());
-    }
+    hold(node_of(place, lane));
 }
 
-// One node of the layer that starts at `start`.
-fn hold(node: Node, start: u32) {
-    let moving = velocity[start + node.index];
+fn hold(node: Node) {
+    let moving = velocity[node.index];
     if (moving.w <= 0.0) {
         return;
     }
@@ -51,15 +47,15 @@ fn hold(node: Node, start: u32) {
     let inward = vec3<i32>(select(vec3<f32>(0.0), sign(normal), size == vec3<f32>(most)));
     var on_line = vec3<f32>(0.0);
     for (var k = 1; k <= 3; k++) {
-        let other = Node(0u, node.cell + inward * k);
+        let other = Node(0u, node.cell + inward * k, node.layer);
         let at = position_of(other);
         if (clear_of_walls(at)) {
             let share = nearest.distance_m / touch(colliders[wall], at).distance_m;
-            on_line = velocity[start + beside(node, inward * k)].xyz * clamp(share, -2.0, 1.0);
+            on_line = velocity[beside(node, inward * k)].xyz * clamp(share, -2.0, 1.0);
             break;
         }
     }
     let across = normal * dot(moving.xyz, normal);
     let along = mix(moving.xyz - across, on_line - normal * dot(on_line, normal), moving.w);
-    velocity[start + node.index] = vec4<f32>(across + along, 0.0);
+    velocity[node.index] = vec4<f32>(across + along, 0.0);
 }

@@ -5,12 +5,17 @@ struct Node {
     index: u32,
     // Nodes from the window's first.
     cell: vec3<i32>,
+    layer: u32,
 }
 
-fn node_of(block: u32, lane: u32) -> Node {
-    let in_block = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
-    let across = vec3<u32>(block % params.blocks.x, (block / params.blocks.x) % params.blocks.y, block / (params.blocks.x * params.blocks.y));
-    return Node(block * 64u + lane, vec3<i32>(across * 4u + in_block));
+// One of the 64 of an active block, `place` along the list of them.
+fn node_of(place: u32, lane: u32) -> Node {
+    let inner = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
+    let block = active_blocks[1u + place];
+    let slab = block / params.blocks.x;
+    let deep = slab / params.blocks.y;
+    let corner = 4u * vec3<u32>(block % params.blocks.x, slab % params.blocks.y, deep % params.blocks.z);
+    return Node((1u + place) * 64u + lane, vec3<i32>(corner + inner), deep / params.blocks.z);
 }
 
 fn position_of(node: Node) -> vec3<f32> {
@@ -19,9 +24,7 @@ fn position_of(node: Node) -> vec3<f32> {
 
 // Storage of a neighbour; at the window's edge, which no particle comes near, of what is nearest.
 fn beside(node: Node, step: vec3<i32>) -> u32 {
-    let cell = clamp(node.cell + step, vec3<i32>(0), vec3<i32>(params.blocks * 4u) - vec3<i32>(1));
-    let offsets = axis_offsets(vec3<u32>(cell));
-    return offsets.x + offsets.y + offsets.z;
+    return stored(vec3<u32>(clamp(node.cell + step, vec3<i32>(0), vec3<i32>(params.blocks * 4u) - vec3<i32>(1))), node.layer);
 }
 
 // The k-th of the 3^3 steps to a node's neighbours and itself.

@@ -19,7 +19,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     let count = active_blocks[0] * 64u;
     var share = vec4<f32>(0.0);
     if (alive) {
-        let node = active_blocks[1u + place] * 64u + lane;
+        let node = (1u + place) * 64u + lane;
         let k = place * 64u + lane;
         let sum = sums[node];
         sums[node] = vec4<i32>(0);

@@ -44,8 +44,8 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     let count = active_blocks[0] * 64u;
     var share = vec4<f32>(0.0);
     if (alive) {
-        let block = active_blocks[1u + place];
-        let node = block * 64u + lane;
+        let at = node_of(place, lane);
+        let node = at.index;
         let k = place * 64u + lane;
         let sum = sums[node];
         let mark = marks[node];
@@ -63,9 +63,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         var bound = nodes[BOUND * count + k];
         var weight = nodes[SOLUTION * count + k].w;
         if (first) {
-            let in_block = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
-            let across = vec3<u32>(block % params.blocks.x, (block / params.blocks.x) % params.blocks.y, block / (params.blocks.x * params.blocks.y));
-            let x = vec3<f32>(params.origin + vec3<i32>(across * 4u + in_block)) * params.cell_m;
+            let x = position_of(at);
             bound = support(mark.y, x);
             if (bound.w == 0.0) {
                 bound = support(mark.x, x);

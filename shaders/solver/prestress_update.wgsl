@@ -13,7 +13,7 @@ var<immediate> substep: Substep;
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
     let place = group.y * GROUPS_ACROSS + group.x;
     let alive = place < active_blocks[0];
-    let node = active_blocks[1u + min(place, active_blocks[0] - 1u)] * 64u + lane;
+    let node = (1u + min(place, active_blocks[0] - 1u)) * 64u + lane;
     let count = active_blocks[0] * 64u;
     let k = place * 64u + lane;
     var share = vec4<f32>(0.0);

@@ -45,8 +45,6 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     if (place >= active_blocks[0]) {
         return;
     }
-    let node = node_of(active_blocks[1u + place], lane);
-    for (var layer = 0u; layer < params.layers; layer++) {
-        respond(layer * layer_nodes() + node.index, position_of(node));
-    }
+    let node = node_of(place, lane);
+    respond(node.index, position_of(node));
 }

@@ -1,14 +1,15 @@
-// Sort, third pass: where each block's particles begin, and the list of active blocks in ascending
-// order. Leaves `block_info` zeroed for the next sort.
+// Sort, third pass: which blocks are stored, in ascending order, where, and where the particles of each
+// begin. Leaves `block_info` zeroed for the next sort.
 
-@group(0) @binding(0) var<storage, read> params: Params;
+@group(0) @binding(0) var<storage, read_write> params: Params;
 @group(0) @binding(1) var<storage, read_write> block_info: array<vec2<u32>>;
 @group(0) @binding(2) var<storage, read> chunk_sums: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read_write> block_start: array<u32>;
-// Active blocks; the first word is their number.
+// Numbers of the active blocks, each where it is stored; the first word is how many there are.
 @group(0) @binding(4) var<storage, read_write> active_blocks: array<u32>;
 // Workgroup counts of a pass with one workgroup for each active block.
 @group(0) @binding(5) var<storage, read_write> active_groups: array<u32>;
+@group(0) @binding(6) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(SCAN_LANES)
 fn main(
@@ -22,7 +23,7 @@ fn main(
     }
     let chunk = scan(lane, earlier).zw;
 
-    let total = params.blocks.x * params.blocks.y * params.blocks.z;
+    let total = params.blocks.x * params.blocks.y * params.blocks.z * params.layers;
     let first = (group.x * SCAN_LANES + lane) * SCAN_RUN;
     let last = min(first + SCAN_RUN, total);
     var sum = vec2<u32>(0u);
@@ -33,15 +34,20 @@ fn main(
     var next = chunk + scanned.xy;
     for (var k = first; k < last; k++) {
         let info = block_info[k];
-        block_start[k] = next.x;
-        if (info.y != 0u) {
-            active_blocks[1u + next.y] = k;
+        let slot = next.y + 1u;
+        let fits = info.y != 0u && slot < arrayLength(&active_blocks);
+        params.slots[k] = select(0u, slot, fits);
+        if (fits) {
+            active_blocks[slot] = k;
+            block_start[slot] = next.x;
         }
         next += info;
         block_info[k] = vec2<u32>(0u);
     }
     if (group.x == groups.x - 1u && lane == 0u) {
-        let number = chunk.y + scanned.w;
+        let wanted = chunk.y + scanned.w;
+        let number = min(wanted, arrayLength(&active_blocks) - 1u);
+        atomicMax(&control.blocks, wanted);
         active_blocks[0] = number;
         active_groups[0] = min(number, GROUPS_ACROSS);
         active_groups[1] = (number + GROUPS_ACROSS - 1u) / GROUPS_ACROSS;

@@ -1,4 +1,4 @@
-// Sort, fourth pass: where each cell's particles begin and end. One workgroup for each active block.
+// Sort, fifth pass: where each cell's particles begin and end. One workgroup for each active block.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
@@ -10,10 +10,10 @@
 @compute @workgroup_size(SCAN_LANES)
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
     let place = group.y * GROUPS_ACROSS + group.x;
-    let block = active_blocks[1u + min(place, active_blocks[0] - 1u)];
-    let cell = block * 64u + lane;
+    let slot = 1u + min(place, active_blocks[0] - 1u);
+    let cell = slot * 64u + lane;
     let scanned = scan(lane, vec2<u32>(cell_count[cell], 0u));
-    let start = block_start[block] + scanned.x;
+    let start = block_start[slot] + scanned.x;
     cell_start[cell] = start;
     cell_end[cell] = start + cell_count[cell];
 }

@@ -6,7 +6,7 @@
 
 @compute @workgroup_size(SCAN_LANES)
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
-    let total = params.blocks.x * params.blocks.y * params.blocks.z;
+    let total = params.blocks.x * params.blocks.y * params.blocks.z * params.layers;
     let first = (group.x * SCAN_LANES + lane) * SCAN_RUN;
     var sum = vec2<u32>(0u);
     for (var k = first; k < min(first + SCAN_RUN, total); k++) {

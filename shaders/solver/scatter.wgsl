@@ -1,4 +1,4 @@
-// Sort, fifth pass: each particle takes a slot of its cell, in whatever order they come; the next
+// Sort, sixth pass: each particle takes a slot of its cell, in whatever order they come; the next
 // pass puts them in order. Counts are back at zero when all are placed.
 
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -14,8 +14,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (id.x >= params.count) {
         return;
     }
-    let offsets = axis_offsets(clamped_cell(base_node(kinematics[id.x].xyz) - params.origin));
-    let cell = offsets.x + offsets.y + offsets.z;
+    let cell = stored(clamped_cell(base_node(kinematics[id.x].xyz) - params.origin), sorted_into(bitcast<u32>(matter[3u * params.count + id.x].y)));
     let slot = cell_start[cell] + atomicSub(&cell_count[cell], 1u) - 1u;
     slots[slot] = vec4<u32>(cell, bitcast<u32>(matter[3u * params.count + id.x].x), id.x, 0u);
 }

@@ -100,13 +100,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let viscosity = motion[i].w;
     var sums = Sums(Near(0u, 0u, mine.w > 0.0), 0.0, vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0);
     let cell = clamp(clamped_cell(base_node(mine.xyz) - params.origin), vec3<u32>(1u), params.blocks * 4u - vec3<u32>(2u));
-    let low = axis_offsets(cell - vec3<u32>(1u));
-    let middle = axis_offsets(cell);
-    let high = axis_offsets(cell + vec3<u32>(1u));
     for (var k = 0u; k < 27u; k++) {
-        let at = vec3<u32>(k % 3u, (k / 3u) % 3u, k / 9u);
-        let offsets = select(select(high, middle, at == vec3<u32>(1u)), low, at == vec3<u32>(0u));
-        let index = offsets.x + offsets.y + offsets.z;
+        let index = stored(cell + vec3<u32>(k % 3u, (k / 3u) % 3u, k / 9u) - vec3<u32>(1u), 0u);
         let end = cell_end[index];
         for (var j = cell_start[index]; j < end; j++) {
             take(&sums, i, j, mine, viscosity);

@@ -139,6 +139,7 @@ impl Solver {
             let reach_m = (speed_m_s * (until_s - self.time_s)) as f32;
             let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + SLACK_CELLS + 3) * room;
             self.fit_window(seen.low, if self.soft { seen.high } else { seen.low }, margin)?;
+            self.make_room(seen.blocks + seen.blocks / 8)?;
             let (start, order) = (self.substep, self.current);
             let outcome = self.run(&plan, stop)?;
             let Outcome::Done(now) = outcome else {
@@ -146,6 +147,12 @@ impl Solver {
                 report.stopped = true;
                 return Ok(());
             };
+            // Room is no matter of the time step either.
+            if now.blocks > self.grid.as_ref().map_or(0, |g| g.capacity) {
+                self.roll_back(start, order);
+                self.make_room(now.blocks)?;
+                continue;
+            }
             let travel_m = SLACK_CELLS as f32 * self.settings.cell_m;
             let Some(reason) = now.trip(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m) else {
                 self.time_s = until_s;
@@ -162,7 +169,7 @@ impl Solver {
             if now.window {
                 room *= 2;
             }
-            // Longer lists are no matter of the time step.
+            // Nor are longer lists.
             if now.crowded && self.lengthen_lists()? {
                 continue;
             }
@@ -328,6 +335,7 @@ impl Solver {
 
     /// Uploads what the passes of a segment start from.
     pub(super) fn start_segment(&mut self) {
+        self.params.pools = u32::from(self.liquid.is_some() || self.sph.is_some());
         self.params.first_substep = self.substep;
         self.gpu.upload(&self.params_buffer, &[self.params]);
         self.gpu.upload(&self.control, &[Control::FRESH]);
@@ -380,21 +388,23 @@ impl Solver {
         }
     }
 
-    /// Puts the particles in the order of their cells and lists the blocks that they may reach.
+    /// Puts the particles in the order of their cells and stores the blocks that they may reach.
     pub(super) fn record_sort(&self, b: &Bound, recording: &mut Recording) {
         let groups = self.particle_groups();
-        let blocks = self.params.blocks.iter().product::<u32>();
-        let chunks = [blocks.div_ceil(super::constants::SCAN_LANES * super::constants::SCAN_RUN), 1, 1];
-        if self.encounter.is_some() {
-            // Blocks that are left keep no mass that a neighbour could see.
-            recording.clear(&b.masses);
-        }
-        recording.dispatch(&self.passes.bin, &b.bin, groups);
-        recording.dispatch(&self.passes.scan_sums, &b.scan_sums, chunks);
-        recording.dispatch(&self.passes.scan_blocks, &b.scan_blocks, chunks);
+        self.record_blocks(b, recording);
+        recording.dispatch(&self.passes.count, &b.count, groups);
         recording.indirect(&self.passes.scan_cells, &b.scan_cells, &b.active_groups, 0);
         recording.dispatch(&self.passes.scatter, &b.scatter, groups);
         recording.dispatch(&self.passes.order, &b.order, groups);
+    }
+
+    /// Finds the blocks that the particles may reach, and where each is stored.
+    pub(super) fn record_blocks(&self, b: &Bound, recording: &mut Recording) {
+        let blocks = self.params.blocks.iter().product::<u32>() * self.params.layers;
+        let chunks = [blocks.div_ceil(super::constants::SCAN_LANES * super::constants::SCAN_RUN), 1, 1];
+        recording.dispatch(&self.passes.bin, &b.bin, self.particle_groups());
+        recording.dispatch(&self.passes.scan_sums, &b.scan_sums, chunks);
+        recording.dispatch(&self.passes.scan_blocks, &b.scan_blocks, chunks);
     }
 
     /// Everything bound, for either of the two state buffers.
@@ -421,12 +431,14 @@ impl Solver {
             rigid: self.rigid.as_ref().map(|r| r.bind(self, grid, current)),
             active_groups: grid.active_groups.clone(),
             fields: self.fields.as_ref().map(|f| f.bind(self, state, When::Now)),
-            masses: grid.masses.clone(),
             encounter: self.encounter.as_ref().map(|e| e.bind(self, grid)),
-            bin: gpu.bind(&p.bin, &[params, kinematics, &grid.cell_count, &grid.block_info, &self.control]),
+            bin: gpu.bind(&p.bin, &[params, kinematics, matter, &grid.block_info, control]),
             scan_sums: gpu.bind(&p.scan_sums, &[params, &grid.block_info, &grid.chunk_sums]),
-            scan_blocks: gpu
-                .bind(&p.scan_blocks, &[params, &grid.block_info, &grid.chunk_sums, &grid.block_start, &grid.active_blocks, &grid.active_groups]),
+            scan_blocks: gpu.bind(
+                &p.scan_blocks,
+                &[params, &grid.block_info, &grid.chunk_sums, &grid.block_start, &grid.active_blocks, &grid.active_groups, control],
+            ),
+            count: gpu.bind(&p.count, &[params, kinematics, matter, &grid.cell_count]),
             scan_cells: gpu
                 .bind(&p.scan_cells, &[params, &grid.active_blocks, &grid.block_start, &grid.cell_count, &grid.cell_start, &grid.cell_end]),
             scatter: gpu.bind(&p.scatter, &[params, kinematics, matter, &grid.cell_count, &grid.cell_start, &self.slots]),
@@ -485,11 +497,11 @@ pub(super) struct Bound {
     pub active_groups: wgpu::Buffer,
     /// Where a scene has fields.
     pub fields: Option<wgpu::BindGroup>,
-    masses: wgpu::Buffer,
     pub encounter: Option<wgpu::BindGroup>,
     bin: wgpu::BindGroup,
     scan_sums: wgpu::BindGroup,
     scan_blocks: wgpu::BindGroup,
+    count: wgpu::BindGroup,
     scan_cells: wgpu::BindGroup,
     scatter: wgpu::BindGroup,
     order: wgpu::BindGroup,

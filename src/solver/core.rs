@@ -4,7 +4,7 @@ use super::budget;
 use super::constants::{FIXED_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
 use super::encounter::{self, Encounter};
 use super::fields::Fields;
-use super::grid::{GridBuffers, GridKind, Window, allowed_blocks};
+use super::grid::{GridBuffers, Window};
 use super::kept::Kept;
 use super::laws::{Laws, rows};
 use super::liquid::LiquidPasses;
@@ -17,10 +17,11 @@ use super::types::{Particles, Placement, Settings, Softened, SolverError};
 use super::watch::{Control, Watch};
 use crate::gpu::{Gpu, Recording};
 use bytemuck::{Pod, Zeroable};
-use glam::{IVec3, Mat3, Vec3};
+use glam::{Mat3, Vec3};
 
-/// `Params` of `shaders/solver/common.wgsl`, in a storage buffer: lavapipe compiles a pass anew for each
-/// value of a uniform or an immediate that alone decides a branch or a loop.
+/// `Params` of `shaders/solver/common.wgsl`, but for the map of blocks that follows it there. In a storage
+/// buffer: lavapipe compiles a pass anew for each value of a uniform or an immediate that alone decides a
+/// branch or a loop.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(super) struct Params {
@@ -44,7 +45,7 @@ pub(super) struct Params {
     pub viscosity_units: f32,
     pub has_liquid: u32,
     pub layers: u32,
-    pub padding: [u32; 2],
+    pub pools: u32,
 }
 
 #[repr(C)]
@@ -283,39 +284,6 @@ impl Solver {
 
     pub(super) fn particle_groups(&self) -> [u32; 3] {
         [self.params.count.div_ceil(WORKGROUP), 1, 1]
-    }
-
-    /// What the scene asks of its grid now.
-    pub(super) fn grid_kind(&self) -> GridKind {
-        GridKind { layers: self.params.layers, wet: self.liquid.is_some(), meets: self.rigid.is_some() && self.soft }
-    }
-
-    /// Makes the window hold stencils from `low` to `high` with room around them.
-    pub(super) fn fit_window(&mut self, low: IVec3, high: IVec3, margin: i32) -> Result<(), SolverError> {
-        if self.window.is_some_and(|w| w.holds(low, high, margin)) {
-            return Ok(());
-        }
-        // Some more room than is needed now, so that a window lasts many frames; where that does not
-        // fit, what is needed.
-        let kind = self.grid_kind();
-        let allowed = allowed_blocks(&self.gpu, kind);
-        let roomy = Window::around(low, high, 2 * margin + 4);
-        let window = if roomy.block_count() <= allowed { roomy } else { Window::around(low, high, margin) };
-        let blocks = window.block_count();
-        if blocks > allowed {
-            let extent_m = (window.blocks * 4).as_vec3() * self.settings.cell_m;
-            let cell_m = self.settings.cell_m;
-            return Err(SolverError::TooWide { extent_m: extent_m.into(), cell_m, nodes: blocks * 64, allowed: allowed * 64 });
-        }
-        if self.grid.as_ref().is_none_or(|g| g.capacity < blocks) {
-            // The old grid goes first, so that both need not fit.
-            self.grid = None;
-            self.grid = Some(GridBuffers::new(&self.gpu, (blocks + blocks / 4).min(allowed), kind)?);
-        }
-        self.params.origin = window.origin.into();
-        self.params.blocks = window.blocks.into();
-        self.window = Some(window);
-        Ok(())
     }
 }
 

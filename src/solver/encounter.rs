@@ -13,7 +13,7 @@ use crate::gpu::Gpu;
 passes! {
     /// The pass between objects, compiled where a scene has several.
     EncounterPasses;
-    encounter: ["substep", "encounter"] [Read, Read, Read, Read, Write] SUBSTEP;
+    encounter: ["substep", "node", "encounter"] [Read, Read, Read, Read, Write] SUBSTEP;
 }
 
 /// Coulomb coefficient between objects where the settings name none.

@@ -1,13 +1,19 @@
-//! The window of the lattice that is stored, and the buffers over it.
+//! The window of the lattice, the blocks of it that are stored, and the buffers over both.
+//!
+//! Memory follows matter: only blocks that particles may reach before the next sort are stored, found anew by
+//! each sort (`bin.wgsl`, `scan_blocks.wgsl`). A window costs but a few bytes a block, for the map behind
+//! `Params`.
 
 use super::constants::{SCAN_LANES, SCAN_RUN};
+use super::core::{Params, Solver};
 use super::liquid::LiquidFields;
 use super::types::SolverError;
-use crate::gpu::{Gpu, Tier};
+use super::watch::Control;
+use crate::gpu::{Gpu, Recording, Tier};
 use glam::{IVec3, UVec3};
 
 /// A box of 4^3 blocks of an endless lattice whose nodes stand at integer multiples of the cell size.
-/// Where it lies decides only what is stored: no sum depends on it.
+/// Where it lies decides only what may be stored: no sum depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Window {
     /// First node, each coordinate a multiple of 4.
@@ -39,11 +45,13 @@ impl Window {
     }
 }
 
-/// Buffers over the window's nodes and blocks. All but `velocity`, `masses` and the liquids' fields hold zeros between segments.
+/// Buffers over stored blocks and over the window's. All but `velocity`, `masses` and the liquids' fields hold zeros between segments.
 #[derive(Clone, Debug)]
 pub(super) struct GridBuffers {
-    /// Blocks that there is room for.
-    pub capacity: u64,
+    /// Blocks that there is room for, beside the empty one.
+    pub capacity: usize,
+    /// Blocks that a window may have, all layers together.
+    pub spread: usize,
     pub kind: GridKind,
     pub sums: wgpu::Buffer,
     pub marks: wgpu::Buffer,
@@ -71,14 +79,20 @@ pub(super) struct MeetingBuffers {
     pub meetings: wgpu::Buffer,
 }
 
-/// Bytes of all buffers for one node, for it in each layer, and there with rigid bodies.
-const NODE_BYTES: u64 = 12;
-const LAYER_BYTES: u64 = 44;
+/// Bytes of all buffers for one node, and beside them for one of several layers, and with rigid bodies.
+const NODE_BYTES: u64 = 52;
+const LAYER_BYTES: u64 = 4;
 const MEETING_BYTES: u64 = 76;
+/// Bytes for one block of the window, and of the map.
+const SPREAD_BYTES: u64 = 12;
 /// A software adapter shares the machine's memory and is slow over much of it.
 const CPU_GRID_BYTES: u64 = 768 << 20;
 /// Room for other programs and for the picture is left on a GPU.
 const GPU_GRID_BYTES: u64 = 6 << 30;
+/// Of these, what the window may take.
+const SPREAD_SHARE: u64 = 4;
+/// Workgroups along an axis that every device runs.
+const GROUPS_MOST: u64 = 65_535;
 
 /// What a scene asks of its grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,43 +105,56 @@ pub(super) struct GridKind {
     pub meets: bool,
 }
 
-/// Blocks that the device holds.
-pub(super) fn allowed_blocks(gpu: &Gpu, kind: GridKind) -> u64 {
-    let layers = u64::from(kind.layers);
-    let limits = gpu.device.limits();
-    let widest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-    let bytes = match gpu.tier {
+/// Bytes that a grid may take.
+fn allowed_bytes(gpu: &Gpu) -> u64 {
+    match gpu.tier {
         Tier::Cpu => CPU_GRID_BYTES,
         Tier::Gpu => GPU_GRID_BYTES,
-    };
-    let layer_bytes = LAYER_BYTES + if kind.meets { MEETING_BYTES } else { 0 };
-    let node_bytes = NODE_BYTES + layer_bytes * layers + if kind.wet { LiquidFields::NODE_BYTES } else { 0 };
-    (widest / if kind.meets { 64 } else { 16 } / layers).min(bytes / node_bytes) / 64
+    }
+}
+
+fn widest_buffer(gpu: &Gpu) -> u64 {
+    let limits = gpu.device.limits();
+    limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+}
+
+/// Blocks that can be stored.
+fn allowed_blocks(gpu: &Gpu, kind: GridKind) -> u64 {
+    let more = |yes: bool, bytes: u64| if yes { bytes } else { 0 };
+    let bytes = NODE_BYTES + more(kind.layers > 1, LAYER_BYTES) + more(kind.meets, MEETING_BYTES) + more(kind.wet, LiquidFields::NODE_BYTES);
+    (widest_buffer(gpu) / if kind.meets { 64 } else { 16 }).min(allowed_bytes(gpu) / bytes) / 64 - 4
+}
+
+/// Blocks that a window may have, all layers together.
+fn allowed_spread(gpu: &Gpu) -> u64 {
+    let scanned = GROUPS_MOST * u64::from(SCAN_LANES * SCAN_RUN);
+    ((allowed_bytes(gpu) / SPREAD_SHARE).min(widest_buffer(gpu)) / SPREAD_BYTES).min(scanned)
 }
 
 impl GridBuffers {
-    pub fn new(gpu: &Gpu, blocks: u64, kind: GridKind) -> Result<GridBuffers, SolverError> {
-        let (layers, wet) = (kind.layers, kind.wet);
-        let nodes = blocks as usize * 64;
-        let layered = nodes * layers as usize;
-        let chunks = blocks.div_ceil(u64::from(SCAN_LANES * SCAN_RUN)) as usize;
+    fn new(gpu: &Gpu, blocks: usize, spread: usize, kind: GridKind) -> Result<GridBuffers, SolverError> {
+        // With the empty one; buffers come in lengths of 16 bytes.
+        let stored = (blocks + 1).next_multiple_of(4);
+        let nodes = stored * 64;
+        let chunks = spread.div_ceil((SCAN_LANES * SCAN_RUN) as usize);
         Ok(GridBuffers {
-            capacity: blocks,
+            capacity: stored - 1,
+            spread,
             kind,
-            sums: gpu.storage::<[i32; 4]>("solver.sums", layered)?,
-            marks: gpu.storage::<[u32; 2]>("solver.marks", layered)?,
-            velocity: gpu.storage::<[f32; 4]>("solver.velocity", layered)?,
-            masses: gpu.storage::<f32>("solver.masses", if layers > 1 { layered } else { 1 })?,
+            sums: gpu.storage::<[i32; 4]>("solver.sums", nodes)?,
+            marks: gpu.storage::<[u32; 2]>("solver.marks", nodes)?,
+            velocity: gpu.storage::<[f32; 4]>("solver.velocity", nodes)?,
+            masses: gpu.storage::<f32>("solver.masses", if kind.layers > 1 { nodes } else { 1 })?,
             cell_count: gpu.storage::<u32>("solver.cell_count", nodes)?,
             cell_start: gpu.storage::<u32>("solver.cell_start", nodes)?,
             cell_end: gpu.storage::<u32>("solver.cell_end", nodes)?,
-            block_info: gpu.storage::<[u32; 2]>("solver.block_info", blocks as usize)?,
-            block_start: gpu.storage::<u32>("solver.block_start", blocks as usize)?,
+            block_info: gpu.storage::<[u32; 2]>("solver.block_info", spread)?,
+            block_start: gpu.storage::<u32>("solver.block_start", stored)?,
             chunk_sums: gpu.storage::<[u32; 2]>("solver.chunk_sums", chunks)?,
-            active_blocks: gpu.storage::<u32>("solver.active_blocks", blocks as usize + 1)?,
+            active_blocks: gpu.storage::<u32>("solver.active_blocks", stored)?,
             active_groups: gpu.storage::<u32>("solver.active_groups", 4)?,
-            liquid: if wet { Some(LiquidFields::new(gpu, nodes)?) } else { None },
-            meeting: if kind.meets { Some(MeetingBuffers::new(gpu, layered)?) } else { None },
+            liquid: if kind.wet { Some(LiquidFields::new(gpu, nodes)?) } else { None },
+            meeting: if kind.meets { Some(MeetingBuffers::new(gpu, nodes)?) } else { None },
         })
     }
 
@@ -146,5 +173,77 @@ impl MeetingBuffers {
             nears: gpu.storage::<[u32; 3]>("solver.rigid.nears", nodes)?,
             meetings: gpu.storage::<[f32; 16]>("solver.rigid.meetings", nodes)?,
         })
+    }
+}
+
+impl Solver {
+    /// What the scene asks of its grid now.
+    pub(super) fn grid_kind(&self) -> GridKind {
+        GridKind { layers: self.params.layers, wet: self.liquid.is_some(), meets: self.rigid.is_some() && self.soft }
+    }
+
+    /// Makes the window hold stencils from `low` to `high` with room around them.
+    pub(super) fn fit_window(&mut self, low: IVec3, high: IVec3, margin: i32) -> Result<(), SolverError> {
+        if self.window.is_some_and(|w| w.holds(low, high, margin)) {
+            return Ok(());
+        }
+        // Some more room than is needed now, so that a window lasts many frames; where that does not
+        // fit, what is needed.
+        let (allowed, layers) = (allowed_spread(&self.gpu), u64::from(self.params.layers));
+        let roomy = Window::around(low, high, 2 * margin + 4);
+        let window = if roomy.block_count() * layers <= allowed { roomy } else { Window::around(low, high, margin) };
+        let spread = window.block_count() * layers;
+        if spread > allowed {
+            return Err(self.too_wide(window, spread, allowed));
+        }
+        self.params.origin = window.origin.into();
+        self.params.blocks = window.blocks.into();
+        self.window = Some(window);
+        if self.grid.as_ref().is_none_or(|g| g.spread < spread as usize) {
+            let capacity = self.grid.as_ref().map(|g| g.capacity);
+            self.new_grid(capacity.unwrap_or(0), (spread + spread / 4).min(allowed) as usize)?;
+            if capacity.is_none() && self.soft {
+                let blocks = self.count_blocks()?;
+                self.make_room(blocks)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes room for so many blocks, and some more to come, where there is none yet.
+    pub(super) fn make_room(&mut self, blocks: usize) -> Result<(), SolverError> {
+        let Some((capacity, spread)) = self.grid.as_ref().map(|g| (g.capacity, g.spread)) else { return Ok(()) };
+        if blocks <= capacity {
+            return Ok(());
+        }
+        let allowed = allowed_blocks(&self.gpu, self.grid_kind());
+        if let (Some(window), true) = (self.window, blocks as u64 > allowed) {
+            return Err(self.too_wide(window, blocks as u64, allowed));
+        }
+        self.new_grid((blocks + blocks / 2 + 64).min(allowed as usize), spread)
+    }
+
+    pub(super) fn new_grid(&mut self, capacity: usize, spread: usize) -> Result<(), SolverError> {
+        // The old one goes first, so that both need not fit.
+        self.grid = None;
+        self.grid = Some(GridBuffers::new(&self.gpu, capacity, spread, self.grid_kind())?);
+        self.params_buffer = self.gpu.storage_bytes("solver.params", (size_of::<Params>() + spread * size_of::<u32>()) as u64)?;
+        self.gpu.upload(&self.params_buffer, &[self.params]);
+        Ok(())
+    }
+
+    /// Blocks that the particles may reach from where they are.
+    fn count_blocks(&mut self) -> Result<usize, SolverError> {
+        self.start_segment();
+        let bound = self.bind_both()?;
+        let mut recording = Recording::default();
+        self.record_blocks(&bound[self.current], &mut recording);
+        self.gpu.submit(&recording);
+        Ok(self.gpu.read::<Control>(&self.control, 1)?[0].watch().blocks)
+    }
+
+    fn too_wide(&self, window: Window, blocks: u64, allowed: u64) -> SolverError {
+        let (cell_m, extent) = (self.settings.cell_m, (window.blocks * 4).as_vec3());
+        SolverError::TooWide { extent_m: (extent * cell_m).into(), cell_m, nodes: blocks * 64, allowed: allowed * 64 }
     }
 }

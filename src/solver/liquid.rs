@@ -15,7 +15,7 @@ use crate::gpu::{Gpu, Recording};
 passes! {
     /// Passes that only scenes with a liquid have; `grid_wet` takes the place of `grid`.
     LiquidPasses;
-    grid_wet: ["control", "substep", "contact", "pin", "grid_wet", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Read] SUBSTEP;
+    grid_wet: ["control", "substep", "contact", "node", "pin", "grid_wet", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Read] SUBSTEP;
     liquid_wall: ["contact", "node", "liquid_wall"] [Read, Read, Read, Write] 0;
     liquid_fill: ["substance", "particle", "liquid_fill"] [Read, Read, Read, Read, Write] 0;
     liquid_share: ["contact", "node", "liquid_share"] [Read, Read, Read, Write, Write, Write] 0;
@@ -49,7 +49,6 @@ impl LiquidFields {
 
 /// The bind groups of the passes over one of the two state buffers.
 pub(super) struct LiquidBound {
-    share_field: wgpu::Buffer,
     pub fill: wgpu::BindGroup,
     pub share: wgpu::BindGroup,
     pub density: wgpu::BindGroup,
@@ -90,7 +89,6 @@ impl Solver {
         let (gpu, params, blocks, table) = (&self.gpu, &self.params_buffer, &grid.active_blocks, &self.laws.table);
         let (kinematics, matter) = (&state.kinematics, &state.matter);
         Some(LiquidBound {
-            share_field: fields.share.clone(),
             fill: gpu.bind(&p.liquid_fill, &[params, kinematics, matter, table, &fields.fill]),
             share: gpu.bind(&p.liquid_share, &[params, blocks, &self.colliders_buffer, &fields.fill, &fields.share, &fields.pull]),
             density: gpu.bind(&p.liquid_density, &[params, kinematics, matter, table, &fields.share]),
@@ -104,8 +102,6 @@ impl Solver {
     pub(super) fn record_liquid(&self, b: &LiquidBound, active_groups: &wgpu::Buffer, span_s: f32, recording: &mut Recording) {
         let Some(p) = &self.liquid else { return };
         let groups = self.particle_groups();
-        // Blocks that are not active any more hold nothing.
-        recording.clear(&b.share_field);
         recording.dispatch(&p.liquid_fill, &b.fill, groups);
         recording.indirect(&p.liquid_share, &b.share, active_groups, 0);
         let span = Substep { dt_s: span_s, dt_next_s: 0.0, index: self.substep, job: 0, since_s: 0.0 };

@@ -55,20 +55,21 @@ macro_rules! passes {
 passes! {
     /// The passes of MLS-MPM.
     Passes;
-    bin: ["control", "cell", "bin"] [Read, Read, Write, Write, Write] 0;
+    bin: ["control", "cell", "bin"] [Read, Read, Read, Write, Write] 0;
     scan_sums: ["scan", "scan_sums"] [Read, Read, Write] 0;
-    scan_blocks: ["scan", "scan_blocks"] [Read, Write, Read, Write, Write, Write] 0;
+    scan_blocks: ["control", "scan", "scan_blocks"] [Write, Write, Read, Write, Write, Write, Write] 0;
+    count: ["cell", "count"] [Read, Read, Read, Write] 0;
     scan_cells: ["scan", "scan_cells"] [Read, Read, Read, Read, Write, Write] 0;
     scatter: ["cell", "scatter"] [Read, Read, Read, Write, Read, Write] 0;
     order: ["order"] [Read, Read, Read, Read, Write, Write] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
     p2g: ["control", "substep", "substance", "hash", "particle", "contact", "p2g"] [Read, Read, Read, Read, Write, Write, Write, Read] SUBSTEP;
-    grid: ["control", "substep", "contact", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
+    grid: ["control", "substep", "contact", "node", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     g2p: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;
     kick: ["particle", "particle_write", "kick"] [Read, Write, Read] KICK;
     prestress_gather: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;
-    prestress_residual: ["control", "substep", "contact", "prestress", "prestress_sum", "prestress_residual"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Write] SUBSTEP;
+    prestress_residual: ["control", "substep", "contact", "node", "prestress", "prestress_sum", "prestress_residual"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Write] SUBSTEP;
     prestress_product: ["control", "substep", "prestress", "prestress_sum", "prestress_product"] [Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     prestress_control: ["substep", "prestress", "prestress_sum", "prestress_control"] [Read, Read, Read, Write] SUBSTEP;
     prestress_update: ["substep", "prestress", "prestress_sum", "prestress_update"] [Read, Read, Read, Write, Write, Write] SUBSTEP;

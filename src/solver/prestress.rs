@@ -14,6 +14,7 @@ use super::grid::GridBuffers;
 use super::obstacles::{self, distance_m};
 use super::state::{ParticleState, RIGID_TAG};
 use super::types::{PrestressReport, SolverError};
+use super::watch::Control;
 use crate::Stop;
 use crate::gpu::{Recording, Tier};
 use bytemuck::{Pod, Zeroable};
@@ -81,7 +82,7 @@ struct Groups {
 pub(super) struct Rounds {
     /// Particles as the search sees them.
     pub pseudo: Vec<ParticleState>,
-    /// Displacement of each node of the window.
+    /// Displacement of each node that is stored.
     pub displacements: Vec<[f32; 4]>,
     /// Particles under the stress that the displacements bring.
     pub adopted: Vec<ParticleState>,
@@ -270,23 +271,28 @@ impl Solver {
         let hand_out = job(ADOPT, scene.round);
         recording.indirect_with(&self.passes.prestress_update, &scene.groups.update, &hand_out, &scene.grid.active_groups, 0);
         self.gpu.submit(&recording);
-        let nodes = self.params.blocks.iter().product::<u32>() as usize * 64;
-        let displacements = self.gpu.read(&scene.grid.velocity, nodes)?;
+        let displacements = self.gpu.read(&scene.grid.velocity, (scene.grid.capacity + 1) * 64)?;
         self.adopt(&mut scene)?;
         Ok(Rounds { pseudo, displacements, adopted: self.states()? })
     }
 
     /// Sorts, and makes room for the search's vectors on the active blocks.
     fn set_up<'a>(&mut self, stop: &'a Stop) -> Result<Scene<'a>, SolverError> {
-        let Some(grid) = self.grid.clone() else {
-            return Err(SolverError::Input { what: "no grid".to_owned(), expected: "a window".to_owned() });
+        let (grid, active) = loop {
+            let Some(grid) = self.grid.clone() else {
+                return Err(SolverError::Input { what: "no grid".to_owned(), expected: "a window".to_owned() });
+            };
+            self.start_segment();
+            let mut recording = Recording::default();
+            self.record_sort(&self.bind(&grid, self.current), &mut recording);
+            self.gpu.submit(&recording);
+            let active = self.gpu.read::<Control>(&self.control, 1)?[0].watch().blocks;
+            if active <= grid.capacity {
+                break (grid, active);
+            }
+            self.make_room(active)?;
         };
-        self.start_segment();
-        let mut recording = Recording::default();
-        self.record_sort(&self.bind(&grid, self.current), &mut recording);
-        self.gpu.submit(&recording);
         self.current = 1 - self.current;
-        let active = self.gpu.read::<u32>(&grid.active_blocks, 1)?[0] as usize;
         let nodes = self.gpu.storage::<[f32; 4]>("solver.prestress_nodes", VECTORS * 64 * active)?;
         let partial = self.gpu.storage::<[f32; 4]>("solver.prestress_partial", active)?;
         let search = self.gpu.storage::<Search>("solver.prestress_search", 1)?;

@@ -20,6 +20,7 @@ pub(super) struct Control {
     final_speed: u32,
     wave_speed: u32,
     crowded: u32,
+    blocks: u32,
 }
 
 impl Control {
@@ -38,6 +39,7 @@ impl Control {
         final_speed: 0,
         wave_speed: 0,
         crowded: 0,
+        blocks: 0,
     };
 
     pub fn watch(&self) -> Watch {
@@ -50,6 +52,7 @@ impl Control {
             overflow: self.overflow != 0,
             window: self.window != 0,
             crowded: self.crowded != 0,
+            blocks: self.blocks as usize,
             nonfinite: self.nonfinite,
             j_low: value(self.j_low),
             j_high: value(self.j_high),
@@ -82,6 +85,8 @@ pub(super) struct Watch {
     pub window: bool,
     /// A list of neighbours was too short.
     pub crowded: bool,
+    /// Most blocks of the grid that any sort of the segment asked for.
+    pub blocks: usize,
     pub nonfinite: u32,
     pub j_low: f32,
     pub j_high: f32,

@@ -144,6 +144,45 @@ fn too_wide_a_world_is_an_error_that_says_so() {
 }
 
 #[test]
+fn memory_follows_matter_and_not_the_room_between() {
+    let near = block(Vec3::ZERO, Vec3::splat(0.1), 0.025, 1e5, 0.3);
+    let blocks = |particles: &Particles| {
+        let mut solver = solver(Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) }, particles);
+        solver.advance(0.02, &Stop::default()).expect("a frame");
+        (solver.seen.expect("a watch").blocks, solver.states().expect("states"))
+    };
+    let (few, _) = blocks(&near);
+    // A crumb of it 20 m away: a million blocks lie between.
+    let mut far = near.clone();
+    far.position_m[0] = Vec3::splat(20.01);
+    let (more, states) = blocks(&far);
+    assert!(more <= few + 8, "{more} blocks, {few} without the crumb");
+    assert_eq!(states[0].position_m, far.position_m[0]);
+}
+
+#[test]
+fn a_grid_that_fills_up_in_a_segment_is_made_larger_and_nothing_else_changes() {
+    let fall = |capacity: Option<usize>| {
+        let mut particles = block(Vec3::new(0.0, 0.0, 0.02), Vec3::splat(0.2), 0.025, 1e5, 0.3);
+        let outwards = |x: &Vec3| (*x - Vec3::new(0.1, 0.1, 0.12)) * 40.0;
+        particles.velocity_m_s = particles.position_m.iter().map(outwards).collect();
+        let mut solver = solver(Settings::new(CELL_M), &particles);
+        if let Some(capacity) = capacity {
+            let seen = solver.look().expect("a look");
+            solver.fit_window(seen.low, seen.high, 40).expect("a window");
+            solver.new_grid(capacity, 100_000).expect("a grid");
+        }
+        let report = solver.advance(0.06, &Stop::default()).expect("three frames");
+        (solver.states().expect("states"), report.retries, solver.grid.as_ref().expect("a grid").capacity)
+    };
+    let (states, retries, _) = fall(None);
+    let (same, as_many, grown) = fall(Some(3));
+    assert_eq!(states, same);
+    assert_eq!(retries, as_many);
+    assert!(grown > 8);
+}
+
+#[test]
 fn input_that_makes_no_sense_is_refused() {
     let gpu = Gpu::shared_for_tests().expect("a device");
     let good = block(Vec3::ZERO, Vec3::splat(0.1), 0.05, 1e5, 0.3);

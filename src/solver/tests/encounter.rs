@@ -10,7 +10,7 @@ use crate::solver::twin::{self, Surroundings};
 use crate::solver::validate::block;
 use crate::solver::{Particles, PinRegion, Plane, Settings, Solver};
 use crate::spec::{ColliderShape, PlaneShape};
-use glam::{DVec3, IVec3, Vec3};
+use glam::{DVec3, Vec3};
 
 const CELL_M: f32 = 0.05;
 const SPACING_M: f32 = 0.025;
@@ -126,14 +126,13 @@ fn layers_meet_as_their_twins_do() {
     let met = layers.iter().flatten().zip(apart.iter().flatten()).filter(|(a, b)| (a.1.velocity - b.1.velocity).length() > 1e-3).count();
     assert!(met > 15, "only {met} nodes met");
 
-    let nodes = (solver.params.blocks.iter().product::<u32>() * 64) as usize;
+    let stored = super::twins::Stored::of(&solver);
     let grid = solver.grid.clone().expect("a grid");
-    let velocity: Vec<[f32; 4]> = gpu.read(&grid.velocity, 3 * nodes).expect("velocity");
+    let velocity: Vec<[f32; 4]> = gpu.read(&grid.velocity, super::twins::node_count(&solver)).expect("velocity");
     let heaviest = layers.iter().flatten().map(|n| n.1.mass).fold(0.0, f64::max);
     for (layer, want) in layers.iter().enumerate() {
         for (node, value) in want.iter().filter(|(_, v)| v.mass > 1e-2 * heaviest) {
-            let cell = IVec3::new(node[2], node[1], node[0]) - IVec3::from(solver.params.origin);
-            let got = velocity[layer * nodes + twin::sort::index(cell.as_uvec3(), &solver.params) as usize];
+            let got = velocity[stored.node(node, layer as u32)];
             assert!((Vec3::from_slice(&got) - value.velocity).length() < 2e-3, "layer {layer}, node {node:?}: {got:?} and {}", value.velocity);
         }
     }

@@ -1,7 +1,7 @@
 //! What liquids need beside their law, on the device against twins, and how they behave as wholes.
 
 use super::solver;
-use super::twins::{CELL_M, DT_S, SUBSTEP, gpu, run, scene_of, sort, stored};
+use super::twins::{CELL_M, DT_S, SUBSTEP, Stored, gpu, node_count, run, scene_of, sort};
 use crate::Stop;
 use crate::solver::state::ParticleState;
 use crate::solver::substance::{Substance, liquid_bulk_pa};
@@ -48,7 +48,7 @@ fn density_tension_and_walls_follow_the_twins() {
 
     let grid = solver.grid.clone().expect("a grid");
     let on_grid = grid.liquid.clone().expect("fields");
-    let nodes = (solver.params.blocks.iter().product::<u32>() * 64) as usize;
+    let (stored, nodes) = (Stored::of(&solver), node_count(&solver));
     let share: Vec<[f32; 4]> = gpu().read(&on_grid.share, nodes).expect("share");
     let pull: Vec<[f32; 4]> = gpu().read(&on_grid.pull, nodes).expect("pull");
     let left: Vec<[i32; 3]> = gpu().read(&on_grid.fill, nodes).expect("fill");
@@ -56,7 +56,7 @@ fn density_tension_and_walls_follow_the_twins() {
     let strongest = fields.pool.keys().map(|&n| fields.pull(n).length()).fold(0.0, f64::max);
     let (mut compared, mut walls, mut astray) = (0, 0, 0);
     for (&node, poured) in fields.pool.iter().filter(|(_, p)| p.volume > 0.01) {
-        let [full, tension, viscosity, _] = share[stored(&node, &solver)].map(f64::from);
+        let [full, tension, viscosity, _] = share[stored.node(&node, 0)].map(f64::from);
         match fields.full(node) {
             Some(want) => assert!((full - want).abs() < 2e-3 * want.max(0.1), "{node:?}: {full} full, {want} by the twin"),
             None => assert!(full < 0.0, "{node:?}"),
@@ -69,7 +69,7 @@ fn density_tension_and_walls_follow_the_twins() {
             "{node:?}: {viscosity} and {}",
             poured.viscosity_m2_s
         );
-        let (got, want) = (DVec3::from(Vec3::from_slice(&pull[stored(&node, &solver)])), fields.pull(node));
+        let (got, want) = (DVec3::from(Vec3::from_slice(&pull[stored.node(&node, 0)])), fields.pull(node));
         compared += 1;
         // Where the surface begins a hair decides.
         astray += usize::from((got - want).length() > 5e-3 * strongest);
@@ -94,7 +94,7 @@ fn density_tension_and_walls_follow_the_twins() {
     let mut want = twin::p2g(&states, &around);
     run(|r| r.indirect_with(&passes.grid, &b.grid, &SUBSTEP, &grid.active_groups, 0));
     for (node, value) in want.iter_mut() {
-        let [x, y, z, viscosity] = pull[stored(node, &solver)];
+        let [x, y, z, viscosity] = pull[stored.node(node, 0)];
         (value.pull_m_s2, value.viscosity_m2_s) = (Vec3::new(x, y, z), viscosity);
     }
     twin::grid(&mut want, &around, DT_S, SUBSTEP.since_s);
@@ -103,7 +103,7 @@ fn density_tension_and_walls_follow_the_twins() {
     let strongest = want.values().map(|n| n.momentum.length()).fold(0.0, f64::max);
     let heavy = |v: &twin::Node| v.mass > 1e-2 * heaviest;
     for (node, value) in want.iter().filter(|(_, v)| heavy(v)) {
-        let got = velocity[stored(node, &solver)];
+        let got = velocity[stored.node(node, 0)];
         let apart = (Vec3::from_slice(&got) - value.velocity).length();
         assert!(apart < 1e-4 * (strongest / value.mass) as f32, "{node:?}: {got:?} and {}", value.velocity);
         assert!((got[3] - value.held).abs() < 1e-4, "{node:?} is held by {} and {}", got[3], value.held);
@@ -111,14 +111,14 @@ fn density_tension_and_walls_follow_the_twins() {
 
     // Walls, from the device's own velocities.
     for (node, value) in want.iter_mut() {
-        let got = velocity[stored(node, &solver)];
+        let got = velocity[stored.node(node, 0)];
         (value.velocity, value.held) = (Vec3::from_slice(&got), got[3]);
     }
     run(|r| solver.record_walls(liquid, &b.active_groups, r));
     let after: Vec<[f32; 4]> = gpu().read(&grid.velocity, nodes).expect("velocity");
     let mut stuck = 0;
     for (node, value) in &want {
-        let got = Vec3::from_slice(&after[stored(node, &solver)]);
+        let got = Vec3::from_slice(&after[stored.node(node, 0)]);
         let expected = if value.held > 0.0 { wall(&want, *node, &around) } else { value.velocity };
         stuck += usize::from(got != value.velocity);
         assert!((got - expected).length() < 1e-4 * value.velocity.length().max(1.0), "{node:?}: {got} and {expected}");

@@ -3,7 +3,7 @@
 use super::solver;
 use crate::gpu::{Gpu, Recording};
 use crate::solver::advance::{Plan, Substep};
-use crate::solver::core::Solver;
+use crate::solver::core::{Params, Solver};
 use crate::solver::obstacles;
 use crate::solver::state::ParticleState;
 use crate::solver::substance::Substance;
@@ -105,10 +105,32 @@ pub(super) fn sort(solver: &mut Solver) {
 
 pub(super) const SUBSTEP: Substep = Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job: 0, since_s: 0.003 };
 
-/// Storage index of a node, z first.
-pub(super) fn stored(node: &[i32; 3], solver: &Solver) -> usize {
-    let cell = IVec3::new(node[2], node[1], node[0]) - IVec3::from(solver.params.origin);
-    twin::sort::index(cell.as_uvec3(), &solver.params) as usize
+/// Where nodes are stored after a sort.
+pub(super) struct Stored {
+    slots: Vec<u32>,
+    params: Params,
+}
+
+impl Stored {
+    pub fn of(solver: &Solver) -> Stored {
+        let words = size_of::<Params>() / 4;
+        let blocks = (solver.params.blocks.iter().product::<u32>() * solver.params.layers) as usize;
+        let all: Vec<u32> = gpu().read(&solver.params_buffer, words + blocks).expect("a map");
+        Stored { slots: all[words..].to_vec(), params: solver.params }
+    }
+
+    /// Of a node, z first.
+    pub fn node(&self, node: &[i32; 3], layer: u32) -> usize {
+        let cell = (IVec3::new(node[2], node[1], node[0]) - IVec3::from(self.params.origin)).as_uvec3();
+        let slot = self.slots[twin::sort::block_number(cell, layer, &self.params) as usize];
+        assert_ne!(slot, 0, "{node:?} is not stored");
+        (slot * 64 + twin::sort::inner(cell)) as usize
+    }
+}
+
+/// Nodes of all blocks that a grid has room for.
+pub(super) fn node_count(solver: &Solver) -> usize {
+    (solver.grid.as_ref().expect("a grid").capacity + 1) * 64
 }
 
 fn close(what: &str, got: Vec3, want: Vec3, scale: f32, tolerance: f32) {
@@ -128,7 +150,7 @@ fn the_sort_lists_the_same_cells_blocks_and_order() {
     let active: Vec<u32> = gpu().read(&grid.active_blocks, want.active.len() + 1).expect("blocks");
     assert_eq!(active[0] as usize, want.active.len());
     assert_eq!(active[1..], want.active);
-    let nodes = (solver.params.blocks.iter().product::<u32>() * 64) as usize;
+    let nodes = node_count(&solver);
     let starts: Vec<u32> = gpu().read(&grid.cell_start, nodes).expect("starts");
     assert!(want.starts.iter().all(|&(cell, start)| starts[cell as usize] == start));
     let counts: Vec<u32> = gpu().read(&grid.cell_count, nodes).expect("counts");
@@ -186,15 +208,16 @@ fn follows_the_twins(substances: [Substance; 2]) {
     // Particles to grid.
     run(|r| r.dispatch_with(&passes.p2g, &b.p2g, &SUBSTEP, groups));
     let want = twin::p2g(&states, &around);
+    let stored = Stored::of(&solver);
     let grid = solver.grid.clone().expect("a grid");
-    let nodes = (solver.params.blocks.iter().product::<u32>() * 64) as usize;
+    let nodes = node_count(&solver);
     let sums: Vec<[i32; 4]> = gpu().read(&grid.sums, nodes).expect("sums");
     let marks: Vec<[u32; 2]> = gpu().read(&grid.marks, nodes).expect("marks");
     let heaviest = want.values().map(|n| n.mass).fold(0.0, f64::max);
     let strongest = want.values().map(|n| n.momentum.length()).fold(0.0, f64::max);
     let (mut mass, mut marked) = (0f64, 0);
     for (node, value) in &want {
-        let k = stored(node, &solver);
+        let k = stored.node(node, 0);
         let got = f64::from(sums[k][3]) / f64::from(solver.params.mass_units);
         assert!((got - value.mass).abs() < 1e-5 * heaviest, "mass {got} of {}", value.mass);
         mass += got;
@@ -218,14 +241,14 @@ fn follows_the_twins(substances: [Substance; 2]) {
     let velocity: Vec<[f32; 4]> = gpu().read(&grid.velocity, nodes).expect("velocity");
     for (node, value) in want.iter().filter(|(_, v)| v.mass > 1e-2 * heaviest) {
         let scale = (strongest / value.mass) as f32;
-        close(&format!("node {node:?}"), Vec3::from_slice(&velocity[stored(node, &solver)]), value.velocity, scale, 1e-4);
+        close(&format!("node {node:?}"), Vec3::from_slice(&velocity[stored.node(node, 0)]), value.velocity, scale, 1e-4);
     }
     let left: Vec<[i32; 4]> = gpu().read(&grid.sums, nodes).expect("sums");
     assert!(left.iter().all(|s| *s == [0; 4]), "the grid is left for the next substep");
 
     // Grid to particles, from the device's own velocities.
     for (node, value) in want.iter_mut() {
-        value.velocity = Vec3::from_slice(&velocity[stored(node, &solver)]);
+        value.velocity = Vec3::from_slice(&velocity[stored.node(node, 0)]);
     }
     run(|r| r.dispatch_with(&passes.g2p, &b.g2p, &SUBSTEP, groups));
     let before = states.clone();
@@ -321,8 +344,9 @@ fn rounds_of_the_prestress_follow_the_twins() {
     let lightest = f64::from(crate::solver::constants::LIGHTEST) / f64::from(solver.params.mass_units);
     let want = twin::prestress::rounds(&got.pseudo, &around, 6, lightest);
     let largest = want.values().map(|u| u.length()).fold(0.0, f64::max);
+    let stored = Stored::of(&solver);
     for (node, u) in &want {
-        let found = Vec3::from_slice(&got.displacements[stored(node, &solver)]).as_dvec3();
+        let found = Vec3::from_slice(&got.displacements[stored.node(node, 0)]).as_dvec3();
         assert!((found - *u).length() < 2e-3 * largest, "node {node:?}: {found} and {u} of {largest}");
     }
     for (found, s) in got.adopted.iter().zip(&got.pseudo) {

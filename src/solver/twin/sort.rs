@@ -1,4 +1,4 @@
-//! The sort: `bin`, `scan_sums`, `scan_blocks`, `scan_cells`, `scatter` and `order`, in one go.
+//! The sort: `bin`, `scan_sums`, `scan_blocks`, `count`, `scan_cells`, `scatter` and `order`, in one go.
 
 use super::base_node;
 use crate::solver::core::Params;
@@ -10,23 +10,48 @@ use std::collections::BTreeSet;
 pub struct Sorted {
     /// Original indices in their new order.
     pub order: Vec<u32>,
-    /// Blocks that particles may reach, ascending.
+    /// Numbers of the blocks that particles may reach, ascending; the first is stored as block 1.
     pub active: Vec<u32>,
-    /// (cell, first slot) of each occupied cell.
+    /// (cell as it is stored, first slot) of each occupied cell.
     pub starts: Vec<(u32, u32)>,
 }
 
-/// Index of a cell of the window in block-linear storage.
-pub fn index(cell: UVec3, params: &Params) -> u32 {
-    let (block, inner) = (cell / 4, cell % 4);
-    let block = (block.z * params.blocks[1] + block.y) * params.blocks[0] + block.x;
-    block * 64 + inner.z * 16 + inner.y * 4 + inner.x
+/// Number of the block of a layer that a cell of the window lies in.
+pub fn block_number(cell: UVec3, layer: u32, params: &Params) -> u32 {
+    let (block, [across, along, up]) = (cell / 4, params.blocks);
+    ((layer * up + block.z) * along + block.y) * across + block.x
+}
+
+/// Place of a cell within its block.
+pub fn inner(cell: UVec3) -> u32 {
+    let inner = cell % 4;
+    inner.z * 16 + inner.y * 4 + inner.x
 }
 
 /// Sorts particles by cell, within a cell by original index.
 pub fn sort(states: &[ParticleState], params: &Params) -> Sorted {
     let cell_of = |s: &ParticleState| (base_node(s.position_m, params) - IVec3::from(params.origin)).as_uvec3();
-    let mut keyed: Vec<(u32, u32)> = states.iter().map(|s| (index(cell_of(s), params), s.index)).collect();
+    let layer_of = |s: &ParticleState| s.object() % params.layers;
+    let mut active = BTreeSet::new();
+    for s in states {
+        let (low, high) = (cell_of(s).as_ivec3() - params.slack, cell_of(s).as_ivec3() + 2 + params.slack);
+        for z in low.z..=high.z {
+            for y in low.y..=high.y {
+                for x in low.x..=high.x {
+                    let cell = IVec3::new(x, y, z).as_uvec3();
+                    active.insert(block_number(cell, layer_of(s), params));
+                    if params.pools != 0 {
+                        active.insert(block_number(cell, 0, params));
+                    }
+                }
+            }
+        }
+    }
+    let active: Vec<u32> = active.into_iter().collect();
+    let slot = |block: u32| active.binary_search(&block).map_or(0, |k| k as u32 + 1);
+    let into = |s: &ParticleState| if params.has_liquid != 0 { 0 } else { layer_of(s) };
+    let stored = |s: &ParticleState| slot(block_number(cell_of(s), into(s), params)) * 64 + inner(cell_of(s));
+    let mut keyed: Vec<(u32, u32)> = states.iter().map(|s| (stored(s), s.index)).collect();
     keyed.sort_unstable();
     let mut starts: Vec<(u32, u32)> = Vec::new();
     for (slot, &(cell, _)) in keyed.iter().enumerate() {
@@ -34,16 +59,5 @@ pub fn sort(states: &[ParticleState], params: &Params) -> Sorted {
             starts.push((cell, slot as u32));
         }
     }
-    let mut active = BTreeSet::new();
-    for s in states {
-        let (low, high) = (cell_of(s).as_ivec3() - params.slack, cell_of(s).as_ivec3() + 2 + params.slack);
-        for z in low.z..=high.z {
-            for y in low.y..=high.y {
-                for x in low.x..=high.x {
-                    active.insert(index(IVec3::new(x, y, z).as_uvec3(), params) / 64);
-                }
-            }
-        }
-    }
-    Sorted { order: keyed.into_iter().map(|(_, i)| i).collect(), active: active.into_iter().collect(), starts }
+    Sorted { order: keyed.into_iter().map(|(_, i)| i).collect(), active, starts }
 }
