@@ -1,10 +1,11 @@
-// Rigid bodies: what all their passes share. The body frame is the world's at the captured pose, with
-// its origin at the centre of mass.
+// Rigid bodies: what all their passes share. The body frame is the world's when the body was
+// made, in the captured pose or later, with its origin at the centre of mass.
 
 struct Body {
     centre: vec4<f32>,
     // The centre as a whole number of quanta, and what is left: its sum of steps loses nothing.
     whole: vec4<i32>,
+    // w: how far inside its support the body stood when it was made, 0 or less.
     low: vec4<f32>,
     // Quaternion from the body frame to the world's.
     turn: vec4<f32>,
@@ -25,9 +26,6 @@ struct Shape {
     first_coefficient: u32,
     first_point: u32,
     points: u32,
-    // How far a captured thing may stand inside its support, 0 or less.
-    rest_m: f32,
-    spare: f32,
     // Of a sphere about the centre that holds the body.
     radius_m: f32,
     // Between the surface's points.

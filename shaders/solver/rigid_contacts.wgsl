@@ -94,7 +94,7 @@ fn slide(a: u32, other: u32, start: vec3<f32>, margin_m: f32) -> Found {
     if (dot(turned(q, outward), seen.normal) > 0.2) {
         return Found(x, NOWHERE, seen.normal);
     }
-    return Found(x, seen.distance_m - select(0.0, shapes[a].rest_m, other < params.collider_count), seen.normal);
+    return Found(x, seen.distance_m - select(0.0, bodies[a].low.w, other < params.collider_count), seen.normal);
 }
 
 // The point with the largest value, the smaller index among equals; RIGID_POINTS where none has one.

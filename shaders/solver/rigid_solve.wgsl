@@ -289,7 +289,7 @@ fn travel(b: u32) {
     let whole = bodies[b].whole.xyz + vec3<i32>(quanta);
     let rest = low - quanta * RIGID_QUANTUM_M;
     bodies[b].whole = vec4<i32>(whole, 0);
-    bodies[b].low = vec4<f32>(rest, 0.0);
+    bodies[b].low = vec4<f32>(rest, bodies[b].low.w);
     bodies[b].centre = vec4<f32>(vec3<f32>(whole) * RIGID_QUANTUM_M + rest, 0.0);
     let momentum = momentum_now(b);
     let q = bodies[b].turn;

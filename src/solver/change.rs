@@ -46,9 +46,6 @@ impl Solver {
     /// other moduli, at the present time. Mass, places, velocities and what is seen stay; what F the new
     /// law goes on with is for [`Substance`] to say. No substance: that which it has.
     pub fn change_material(&mut self, object: u32, only: Option<&[u32]>, substance: Option<&Substance>, moduli: Moduli) -> Result<(), SolverError> {
-        if substance.is_some_and(|s| s.rigid().is_some()) {
-            return Err(SolverError::Input { what: "a change to a rigid body".to_owned(), expected: "soft matter".to_owned() });
-        }
         let row = substance.map(|s| self.row_for(s)).transpose()?;
         let mut picked = vec![only.is_none(); self.params.count as usize];
         for &index in only.into_iter().flatten() {
@@ -60,10 +57,15 @@ impl Solver {
         let mut states = self.states()?;
         let mut unstressed: Vec<Rows> = self.gpu.read(&self.unstressed, states.len())?;
         let mut shown = self.shown()?;
-        for (i, state) in states.iter_mut().enumerate().filter(|(i, s)| picked[*i] && s.object() == object && !s.is_rigid()) {
+        let mut bodies_change = false;
+        for (i, state) in states.iter_mut().enumerate().filter(|(i, s)| picked[*i] && s.object() == object) {
             (state.mu_pa, state.lambda_pa) = moduli.of(state.mu_pa, state.lambda_pa);
             let modulus = state.lambda_pa + 2.0 * state.mu_pa;
-            if !(state.mu_pa >= 0.0 && modulus > 0.0 && modulus.is_finite()) {
+            let stiff = match substance {
+                Some(after) => after.rigid().is_none(),
+                None => !state.is_rigid(),
+            };
+            if stiff && !(state.mu_pa >= 0.0 && modulus > 0.0 && modulus.is_finite()) {
                 return Err(SolverError::Input {
                     what: format!("{moduli:?}"),
                     expected: "finite moduli over 0, nu over -1 and under 0.5".to_owned(),
@@ -73,12 +75,16 @@ impl Solver {
                 let before = &self.laws.substances[state.substance()];
                 let after = &self.laws.substances[usize::from(row)];
                 turn(state, before, after, &mut unstressed[i], shown.get_mut(i));
-                state.tag = object | u32::from(row) << 16;
-                if after.is_sph() {
-                    // It has pressure in place of moduli, and no part in the grid.
+                bodies_change |= (state.is_rigid() || after.rigid().is_some()) && state.substance() != usize::from(row);
+                state.set_substance(row, after.rigid().is_some());
+                if after.is_sph() || after.rigid().is_some() {
+                    // It has pressure, or no stress at all, in place of moduli, and no part in the grid.
                     (state.mu_pa, state.lambda_pa, state.affine) = (0.0, 0.0, [0.0; 9]);
                 }
             }
+        }
+        if bodies_change {
+            self.reassemble(&mut states, &mut unstressed)?;
         }
         self.gpu.upload(&self.unstressed, &unstressed);
         self.set_shown(&shown);

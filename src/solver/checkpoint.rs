@@ -19,6 +19,8 @@ struct Header {
     time_s: f64,
     /// Bytes of the table of substances, JSON.
     table_bytes: u64,
+    /// Rigid bodies.
+    bodies: u64,
 }
 
 impl Solver {
@@ -28,12 +30,15 @@ impl Solver {
         let count = self.params.count;
         let table = serde_json::to_vec(&self.laws.substances).map_err(|e| SolverError::Checkpoint { what: e.to_string() })?;
         let table_bytes = table.len() as u64;
-        let header = Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s, table_bytes };
+        let bodies = self.rigid.as_ref().map_or(0, |r| r.count() as u64);
+        let header = Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s, table_bytes, bodies };
         let mut bytes = bytemuck::bytes_of(&header).to_vec();
         bytes.extend(table);
         bytes.extend_from_slice(bytemuck::cast_slice(&self.states()?));
         let unstressed: Vec<[f32; 12]> = self.gpu.read(&self.unstressed, count as usize)?;
         bytes.extend_from_slice(bytemuck::cast_slice(&unstressed));
+        // A change may have made them on the way.
+        bytes.extend_from_slice(bytemuck::cast_slice(self.rigid.as_ref().map_or(&[][..], |r| &r.anchors_host)));
         for kept in self.kept() {
             bytes.extend(kept.read(&self.gpu)?);
         }
@@ -58,15 +63,21 @@ impl Solver {
         // A material may have changed since the start.
         let table: Vec<Substance> = serde_json::from_slice(table).map_err(|e| refuse(e.to_string()))?;
         self.set_substances(&table)?;
-        let beside: usize = self.kept().map(|k| k.bytes() as usize).sum();
-        let whole = states + tail + beside;
-        if bytes.len() != whole {
-            return Err(refuse(format!("{} bytes where {count} particles take {whole}", bytes.len())));
+        let anchors = if header.bodies > 0 { count * size_of::<[f32; 4]>() } else { 0 };
+        let short = |whole: usize| refuse(format!("{} bytes where {count} particles take {whole}", bytes.len()));
+        if bytes.len() < states + tail + anchors || header.bodies > count as u64 {
+            return Err(short(states + tail + anchors));
         }
         let particles: Vec<ParticleState> = bytemuck::pod_collect_to_vec(&bytes[..states]);
         let unstressed: Vec<[f32; 12]> = bytemuck::pod_collect_to_vec(&bytes[states..states + tail]);
         if let Some(row) = particles.iter().map(ParticleState::substance).find(|&row| row >= table.len()) {
             return Err(refuse(format!("a particle of substance {row} of {}", table.len())));
+        }
+        let anchored = bytemuck::pod_collect_to_vec(&bytes[states + tail..states + tail + anchors]);
+        self.rebuild(anchored, header.bodies as usize, &particles)?;
+        let whole = states + tail + anchors + self.kept().map(|k| k.bytes() as usize).sum::<usize>();
+        if bytes.len() != whole {
+            return Err(short(whole));
         }
         self.set_layers(&particles)?;
         self.replace(particles);
@@ -75,7 +86,7 @@ impl Solver {
             self.softened.clear();
         }
         self.gpu.upload(&self.unstressed, &unstressed);
-        let mut rest = &bytes[states + tail..];
+        let mut rest = &bytes[states + tail + anchors..];
         for kept in self.kept() {
             let (content, more) = rest.split_at(kept.bytes() as usize);
             kept.write(&self.gpu, content);

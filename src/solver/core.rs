@@ -149,7 +149,7 @@ impl Solver {
             backup: StateBuffers::new(gpu, "solver.backup", n)?,
             fields: Fields::new(gpu, &settings, particles, params.seed)?,
             sph: None,
-            kept: rigid.iter().flat_map(Rigid::kept).collect(),
+            kept: Vec::new(),
             rigid,
             soft: states.iter().any(|s| !s.is_rigid()),
             slots: gpu.storage::<[u32; 4]>("solver.slots", n)?,
@@ -256,7 +256,7 @@ impl Solver {
 
     /// State beside the particles.
     pub(super) fn kept(&self) -> impl Iterator<Item = &Kept> {
-        self.laws.kept().into_iter().chain(&self.kept)
+        self.laws.kept().into_iter().chain(self.rigid.iter().flat_map(Rigid::kept)).chain(&self.kept)
     }
 
     /// All particles in their original order.

@@ -51,6 +51,11 @@ impl ParticleState {
         self.tag & RIGID_TAG != 0
     }
 
+    /// Makes it of the substance of a row.
+    pub fn set_substance(&mut self, row: u16, rigid: bool) {
+        self.tag = self.object() | u32::from(row) << 16 | if rigid { RIGID_TAG } else { 0 };
+    }
+
     /// Index of its object.
     pub fn object(&self) -> u32 {
         self.tag & 0xffff

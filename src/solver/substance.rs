@@ -221,6 +221,8 @@ impl Substance {
             return (f, history);
         }
         match self {
+            // A body's F is its rotation since it was made.
+            Substance::Rigid { .. } => (Mat3::IDENTITY, 0.0),
             Substance::Sand { .. } => {
                 let volume = f.determinant().max(J_LEAST);
                 (Mat3::from_diagonal(Vec3::splat(volume.min(1.0).cbrt())), volume.ln().clamp(0.0, LOOSE_MOST))

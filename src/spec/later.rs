@@ -4,21 +4,13 @@
 use serde_json::Value;
 
 use super::error::{SpecError, SpecErrorKind};
-use super::{Event, LiquidSolver, Material, presets};
-
-/// Kinds of material whose laws are to come, and what they are called.
-const KINDS: &[(&str, &str)] = &[("rigid", "rigid bodies")];
+use super::{Event, LiquidSolver, Material};
 
 /// Everything to come, with the words that are refused for it.
 pub(super) fn all() -> impl Iterator<Item = (&'static str, String)> {
-    let kinds = KINDS.iter().map(|(kind, what)| {
-        let presets = presets::MATERIALS.iter().filter(|preset| preset.material.kind() == *kind).map(|preset| preset.name);
-        let words: Vec<&str> = std::iter::once(*kind).chain(presets.filter(|name| name != kind)).collect();
-        (*what, words.join(", "))
-    });
     let solvers = SPH.map(|what| (what, "material.solver = \"sph\"".to_owned()));
     let effects = EFFECTS.iter().map(|(key, what)| (*what, format!("event.{key}")));
-    kinds.chain(solvers).chain(effects).chain(
+    solvers.into_iter().chain(effects).chain(
         KEYS.iter().chain(WORDS).map(|(place, name, what)| (*what, if place.is_empty() { (*name).to_owned() } else { format!("{place}.{name}") })),
     )
 }
@@ -28,9 +20,8 @@ const SPH: Option<&str> = Some("liquids by smoothed particles");
 
 /// What a material will once be that is not built yet, with the key that asks for it.
 pub fn material(material: &Material) -> Option<(&'static str, &'static str)> {
-    let kind = KINDS.iter().find(|(kind, _)| *kind == material.kind()).map(|(_, what)| ("kind", *what));
     let sph = matches!(material, Material::Liquid(liquid) if liquid.solver == LiquidSolver::Sph);
-    kind.or(SPH.filter(|_| sph).map(|what| ("solver", what)))
+    SPH.filter(|_| sph).map(|what| ("solver", what))
 }
 
 /// Effects of events that are to come.
@@ -40,12 +31,6 @@ const EFFECTS: &[(&str, &str)] = &[("freeze", "freezing"), ("when", "events that
 pub(super) fn event(event: &Event) -> Option<(&'static str, &'static str)> {
     let keys = event.effects().into_iter().chain(event.when.map(|_| "when")).collect::<Vec<_>>();
     EFFECTS.iter().copied().find(|(key, _)| keys.contains(key))
-}
-
-/// The kinds that are built.
-pub(super) fn built_kinds() -> String {
-    let built: Vec<&str> = Material::KINDS.into_iter().filter(|kind| !KINDS.iter().any(|(later, _)| later == kind)).collect();
-    built.join(", ")
 }
 
 /// Keys to come: where, which, what they mean.

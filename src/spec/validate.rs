@@ -77,7 +77,7 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
 fn material(material: &Material, owner: &str) -> Result<(), SpecError> {
     let place = format!("{owner}.material");
     if let Some((key, what)) = later::material(material) {
-        return Err(later::error(&format!("{place}.{key}"), what, &later::built_kinds()));
+        return Err(later::error(&format!("{place}.{key}"), what, "solver = \"mpm\""));
     }
     let Material::Muscle(muscle) = material else { return Ok(()) };
     heading(&format!("{place}.fibre"), &muscle.fibre, "a direction")?;

@@ -14,6 +14,8 @@ const SETTLE_S: f64 = 0.8;
 const DURATION_S: (f64, f64) = (2.0, 8.0);
 /// Friction taken where the spec says none, so that a slide ends.
 const LEAST_FRICTION: f64 = 0.05;
+/// Slower bounces are none.
+const LEAST_BOUNCE_M_S: f64 = 0.1;
 
 /// One object's predicted path.
 #[derive(Clone, Debug, Default)]
@@ -85,7 +87,7 @@ pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, ground_m: f64, u
     events.sort_by(|a, b| a.at_s.unwrap_or(until_s).total_cmp(&b.at_s.unwrap_or(until_s)));
     let mut path = Path { points: vec![body.at], rests_s: 0.0 };
     let mut now = 0.0;
-    let ground = Ground { spec, facts, ground_m, gravity };
+    let ground = Ground { spec, restitution: restitution(thing, spec), facts, ground_m, gravity };
     for (event, at_s) in events.into_iter().filter_map(|event| Some((event, event.at_s?))) {
         travel(&mut body, now, at_s.min(until_s), &ground, &drives, &mut path);
         now = at_s;
@@ -96,9 +98,16 @@ pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, ground_m: f64, u
     path
 }
 
+/// Of a rigid thing and the ground, the larger.
+fn restitution(thing: &Object, spec: &Spec) -> f64 {
+    thing.material.restitution().map_or(0.0, |own| own.max(spec.world.ground.restitution))
+}
+
 /// What it lands and slides on.
 struct Ground<'a> {
     spec: &'a Spec,
+    /// Share of its speed that it leaves with: what is soft keeps the rest in itself.
+    restitution: f64,
     facts: &'a ObjectFacts,
     ground_m: f64,
     gravity: DVec3,
@@ -143,7 +152,8 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Dri
         body.at += body.velocity * step_s;
         if body.at.z < floor {
             body.at.z = floor;
-            body.velocity.z = 0.0;
+            let back_m_s = -body.velocity.z * ground.restitution;
+            body.velocity.z = if back_m_s > LEAST_BOUNCE_M_S { back_m_s } else { 0.0 };
         }
         now += step_s;
         path.points.push(body.at);

@@ -53,12 +53,12 @@ impl Yardstick {
 
     /// A material of this object as the solver takes it. A law that the solver does not have is an error.
     pub fn stuff(&self, material: &Material) -> Result<Stuff, SolverError> {
-        Ok(Stuff {
-            substance: substance(material)?,
-            young_pa: material.young_pa().unwrap_or(Auto::Auto).unwrap_or(self.young_pa(material)),
-            poisson: material.poisson().unwrap_or(0.0),
-            density_kg_m3: material.density_kg_m3(),
-        })
+        // A body has no modulus.
+        let young_pa = match material {
+            Material::Rigid(_) => 0.0,
+            _ => material.young_pa().unwrap_or(Auto::Auto).unwrap_or(self.young_pa(material)),
+        };
+        Ok(Stuff { substance: substance(material)?, young_pa, poisson: material.poisson().unwrap_or(0.0), density_kg_m3: material.density_kg_m3() })
     }
 }
 
@@ -90,6 +90,7 @@ impl Stuff {
 
 fn substance(material: &Material) -> Result<Substance, SolverError> {
     match material {
+        Material::Rigid(m) => Ok(Substance::Rigid { friction: m.friction as f32, restitution: m.restitution as f32 }),
         Material::Elastic(m) => Ok(Substance::Elastic(m.model)),
         Material::Muscle(m) => {
             let fibre = DVec3::from(m.fibre).normalize_or(DVec3::Z).as_vec3();

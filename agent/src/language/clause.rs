@@ -32,6 +32,14 @@ impl Clause {
         })
     }
 
+    /// Takes the first phrase that `pick` accepts and that stands right before another meaning.
+    pub fn take_before<T>(&mut self, next: &Sense, pick: impl Fn(&Sense) -> Option<T>) -> Option<T> {
+        let at =
+            (1..self.phrases.len()).find(|&i| self.phrases[i].sense == *next && !self.taken[i - 1] && pick(&self.phrases[i - 1].sense).is_some())?;
+        self.taken[at - 1] = true;
+        pick(&self.phrases[at - 1].sense)
+    }
+
     /// Takes every phrase that `pick` accepts.
     pub fn take_all<T>(&mut self, pick: impl Fn(&Sense) -> Option<T>) -> Vec<T> {
         std::iter::from_fn(|| self.take(&pick)).collect()
@@ -68,7 +76,7 @@ impl Clause {
         // "On the table" only says where it stands; any other word about the ground asks for something.
         let stands = |i: usize| {
             self.phrases[i].sense == Sense::Ground && {
-                let before = self.phrases[..i].iter().rev().find(|p| p.sense != Sense::Article);
+                let before = self.phrases[..i].iter().rev().find(|p| !matches!(p.sense, Sense::Article | Sense::Material(_)));
                 before.is_some_and(|p| p.sense == Sense::Preposition(Preposition::On))
             }
         };

@@ -84,7 +84,7 @@ const EXAMPLES: &[(&str, &[&str])] = &[
     ),
     (
         "Several at once, slips, and what is not understood",
-        &["make the vsae jump and look from behind", "make the wooden vase jump", "push it sternly to the left", "push the flowers"],
+        &["make the vsae jump and look from behind", "make the golden vase jump", "push it sternly to the left", "push the flowers"],
     ),
 ];
 
@@ -284,7 +284,7 @@ fn field_name(field: Field) -> &'static str {
 fn unbuilt_name(what: Unbuilt) -> &'static str {
     match what {
         Unbuilt::Liquid => "other liquids",
-        Unbuilt::Rigid => "rigid bodies",
+        Unbuilt::Rigid => "other rigid stuff",
         Unbuilt::Plastic => "other stuff that keeps dents",
         Unbuilt::Viscoplastic => "other thick stuff",
         Unbuilt::Grains => "other grains",

@@ -20,6 +20,7 @@ use std::collections::{BTreeMap, HashMap};
 pub(in crate::solver) struct Body {
     pub centre_m: [f32; 4],
     pub whole: [i32; 4],
+    /// w: how far inside its support it stood when it was made, 0 or less.
     pub low_m: [f32; 4],
     pub turn: [f32; 4],
     pub velocity_m_s: [f32; 4],
@@ -31,7 +32,7 @@ impl Body {
     pub fn put(&mut self, centre_m: Vec3) {
         let whole = (centre_m / RIGID_QUANTUM_M).round();
         self.whole = whole.as_ivec3().extend(0).into();
-        self.low_m = (centre_m - whole * RIGID_QUANTUM_M).extend(0.0).into();
+        self.low_m = (centre_m - whole * RIGID_QUANTUM_M).extend(self.low_m[3]).into();
         self.centre_m = centre_m.extend(0.0).into();
     }
 }
@@ -49,9 +50,6 @@ pub(in crate::solver) struct Shape {
     pub first_coefficient: u32,
     pub first_point: u32,
     pub points: u32,
-    /// How far a captured thing may stand inside its support, 0 or less.
-    pub rest_m: f32,
-    pub spare: f32,
     pub radius_m: f32,
     pub apart_m: f32,
     pub friction: f32,
@@ -60,6 +58,7 @@ pub(in crate::solver) struct Shape {
     pub bonded: u32,
     pub first_chunk: u32,
     pub chunks: u32,
+    pub padding: [u32; 2],
 }
 
 impl Shape {
@@ -78,6 +77,9 @@ impl Shape {
     }
 }
 
+/// Of a particle that no body moves.
+const NO_ANCHOR: [f32; 4] = [0.0, 0.0, 0.0, f32::from_bits(u32::MAX)];
+
 /// All bodies of a scene as they start.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solver) struct Assembly {
@@ -86,8 +88,8 @@ pub(in crate::solver) struct Assembly {
     /// Of all surfaces, body frame.
     pub points: Vec<[f32; 4]>,
     pub coefficients: Vec<f32>,
-    /// Place in the body frame of each particle in the original order; w the bits of its body, or of
-    /// `u32::MAX`.
+    /// Place in the body frame of each particle in the original order, and the bits of its body's number; see
+    /// [`NO_ANCHOR`].
     pub anchors: Vec<[f32; 4]>,
     pub fields: Vec<Field>,
     /// Particles near the surface: place in the body frame and mass; each body's fill whole chunks.
@@ -101,13 +103,11 @@ pub(in crate::solver) struct Assembly {
 /// What one body is made of, before it has a place among the others.
 struct Made {
     shape: Shape,
-    body: Body,
-    centre_m: Vec3,
     field: Field,
     points: Vec<Vec3>,
 }
 
-/// The bodies that the particles make; none without rigid particles.
+/// The bodies that the particles make; none without rigid particles. Their frame is the world's as it is.
 pub(in crate::solver) fn assemble(
     states: &[ParticleState],
     substances: &[Substance],
@@ -122,39 +122,77 @@ pub(in crate::solver) fn assemble(
         let what = format!("{} rigid bodies", groups.len());
         return Err(SolverError::Input { what, expected: format!("at most {RIGID_BODIES}") });
     }
-    let most = (RIGID_FIELD as usize / groups.len()).clamp(32 * 32 * 32, 96 * 96 * 96);
-    let made: Vec<Made> = groups.par_iter().map(|members| make(states, members, substances, most)).collect();
-    let mut all = Assembly { anchors: vec![[0.0, 0.0, 0.0, f32::from_bits(u32::MAX)]; states.len()], least_m: f32::INFINITY, ..Default::default() };
+    let mut anchors = vec![NO_ANCHOR; states.len()];
+    let mut centres_m = Vec::new();
+    for (index, members) in groups.iter().enumerate() {
+        let centre_m = mean(states, members, |s| s.position_m).as_vec3();
+        members.iter().for_each(|&i| anchors[i] = (states[i].position_m - centre_m).extend(f32::from_bits(index as u32)).into());
+        centres_m.push(centre_m);
+    }
+    let mut all = build(anchors, groups.len(), states, substances, cell_m);
+    for ((body, members), centre_m) in groups.iter().enumerate().zip(centres_m) {
+        all.start(body, members, centre_m, states, colliders);
+    }
+    Ok(Some(all))
+}
+
+/// The bodies whose particles have these places in their frames, wherever they are now: all but how they move.
+pub(in crate::solver) fn build(anchors: Vec<[f32; 4]>, count: usize, states: &[ParticleState], substances: &[Substance], cell_m: f32) -> Assembly {
+    let mut groups = vec![Vec::new(); count];
+    for (i, anchor) in anchors.iter().enumerate() {
+        if let Some(members) = groups.get_mut(anchor[3].to_bits() as usize) {
+            members.push(i);
+        }
+    }
+    let most = (RIGID_FIELD as usize / count).clamp(32 * 32 * 32, 96 * 96 * 96);
+    let made: Vec<Made> = groups.par_iter().map(|members| make(states, members, &anchors, substances, most)).collect();
+    let mut all = Assembly { anchors, least_m: f32::INFINITY, ..Default::default() };
     for (index, (made, members)) in made.into_iter().zip(&groups).enumerate() {
         let mut shape = made.shape;
         (shape.first_coefficient, shape.first_point) = (all.coefficients.len() as u32, all.points.len() as u32);
         shape.bonded = u32::from(states.iter().any(|s| s.object() == shape.object && !s.is_rigid()));
         all.add_members(&mut shape, index as u32, &made, states, members, cell_m);
-        let deepest_m = made.points.iter().map(|p| distance_m(colliders, *p + made.centre_m)).fold(0.0, f32::min);
-        shape.rest_m = deepest_m.max(-made.field.voxel_m);
         all.points.extend(made.points.iter().map(|p| p.extend(0.0).to_array()));
         all.coefficients.extend(&made.field.coefficients);
-        for &i in members {
-            all.anchors[i] = (states[i].position_m - made.centre_m).extend(f32::from_bits(index as u32)).into();
-        }
         all.least_m = all.least_m.min(shape.radius_m);
-        all.bodies.push(made.body);
+        all.bodies.push(Body { turn: [0.0, 0.0, 0.0, 1.0], ..Default::default() });
         all.shapes.push(shape);
         all.fields.push(made.field);
     }
-    Ok(Some(all))
+    all
 }
 
 impl Assembly {
+    /// Puts a body where its particles are, as they move.
+    fn start(&mut self, body: usize, members: &[usize], centre_m: Vec3, states: &[ParticleState], colliders: &[ColliderRecord]) {
+        let shape = &self.shapes[body];
+        let velocity_m_s = mean(states, members, |s| s.velocity_m_s);
+        // What the particles' places alone carry; the rest turns with them.
+        let (mut places, mut angular) = (DMat3::ZERO, DVec3::ZERO);
+        for &i in members {
+            let (m, r) = (f64::from(states[i].mass_kg), Vec3::from_slice(&self.anchors[i]).as_dvec3());
+            places += around(r) * m;
+            angular += r.cross(states[i].velocity_m_s.as_dvec3()) * m;
+        }
+        let momentum = shape.inertia().as_dmat3() * solved(places, angular);
+        let points = &self.points[shape.first_point as usize..(shape.first_point + shape.points) as usize];
+        let deepest_m = points.iter().map(|p| distance_m(colliders, Vec3::from_slice(p) + centre_m)).fold(0.0, f32::min);
+        let started = &mut self.bodies[body];
+        started.low_m[3] = deepest_m.max(-shape.voxel_m);
+        started.put(centre_m);
+        started.velocity_m_s = velocity_m_s.as_vec3().extend(0.0).into();
+        started.angular_momentum = momentum.as_vec3().extend(0.0).into();
+    }
+
     /// Lists the particles that soft matter may meet: those within two cells of the surface.
     fn add_members(&mut self, shape: &mut Shape, body: u32, made: &Made, states: &[ParticleState], particles: &[usize], cell_m: f32) {
         shape.first_chunk = self.owners.len() as u32;
         if states.iter().all(ParticleState::is_rigid) {
             return;
         }
-        let places = particles.iter().map(|&i| (states[i].position_m - made.centre_m, states[i].mass_kg));
-        let near = places.filter(|(p, _)| made.field.at(*p).distance_m > -2.0 * cell_m);
-        self.members.extend(near.map(|(p, kg)| p.extend(kg).to_array()));
+        let places = particles.iter().map(|&i| (Vec3::from_slice(&self.anchors[i]), states[i].mass_kg));
+        let near: Vec<_> = places.filter(|(p, _)| made.field.at(*p).distance_m > -2.0 * cell_m).map(|(p, kg)| p.extend(kg).to_array()).collect();
+        self.members.extend(near);
         self.members.resize(self.members.len().next_multiple_of(RIGID_LANES as usize), [0.0; 4]);
         self.owners.resize(self.members.len() / RIGID_LANES as usize, body);
         shape.chunks = self.owners.len() as u32 - shape.first_chunk;
@@ -196,26 +234,16 @@ fn touching(states: &[ParticleState], one: &[usize], other: &[usize], cell_m: f3
     })
 }
 
-fn make(states: &[ParticleState], members: &[usize], substances: &[Substance], most: usize) -> Made {
+fn make(states: &[ParticleState], members: &[usize], anchors: &[[f32; 4]], substances: &[Substance], most: usize) -> Made {
     let mass: f64 = members.iter().map(|&i| f64::from(states[i].mass_kg)).sum();
-    let weighted = |of: &dyn Fn(&ParticleState) -> DVec3| members.iter().map(|&i| of(&states[i]) * f64::from(states[i].mass_kg)).sum::<DVec3>();
-    let centre = weighted(&|s| s.position_m.as_dvec3()) / mass;
-    let centre_m = centre.as_vec3();
-    let velocity = weighted(&|s| s.velocity_m_s.as_dvec3()) / mass;
-    let (mut inertia, mut angular) = (DMat3::ZERO, DVec3::ZERO);
-    for s in members.iter().map(|&i| &states[i]) {
-        let (m, r) = (f64::from(s.mass_kg), s.position_m.as_dvec3() - centre_m.as_dvec3());
+    let points_m: Vec<Vec3> = members.iter().map(|&i| Vec3::from_slice(&anchors[i])).collect();
+    let volumes_m3: Vec<f32> = members.iter().map(|&i| states[i].volume_m3).collect();
+    let mut inertia = DMat3::ZERO;
+    for (s, r) in members.iter().map(|&i| &states[i]).zip(&points_m) {
         // Each particle is a cube of its volume.
         let own = f64::from(s.volume_m3).powf(2.0 / 3.0) / 6.0;
-        inertia += (DMat3::from_diagonal(DVec3::splat(r.length_squared() + own)) - DMat3::from_cols(r * r.x, r * r.y, r * r.z)) * m;
-        angular += r.cross(s.velocity_m_s.as_dvec3()) * m;
+        inertia += (around(r.as_dvec3()) + DMat3::from_diagonal(DVec3::splat(own))) * f64::from(s.mass_kg);
     }
-    // What the particles' places alone carry; the rest turns with them.
-    let places = inertia
-        - DMat3::IDENTITY * members.iter().map(|&i| f64::from(states[i].mass_kg) * f64::from(states[i].volume_m3).powf(2.0 / 3.0) / 6.0).sum::<f64>();
-    let spin = solved(places, angular);
-    let points_m: Vec<Vec3> = members.iter().map(|&i| states[i].position_m - centre_m).collect();
-    let volumes_m3: Vec<f32> = members.iter().map(|&i| states[i].volume_m3).collect();
     let field = Field::of(&Cloud { points_m: &points_m, volumes_m3: &volumes_m3, spacing_m: spacing_m(&volumes_m3) }, most);
     let (points, apart_m) = field.surface(RIGID_POINTS as usize);
     let surface = |pick: fn(&Substance) -> f32| {
@@ -236,11 +264,18 @@ fn make(states: &[ParticleState], members: &[usize], substances: &[Substance], m
         object: states[members[0]].object(),
         ..Default::default()
     };
-    let mut body = Body { turn: [0.0, 0.0, 0.0, 1.0], ..Default::default() };
-    body.put(centre_m);
-    body.velocity_m_s = velocity.as_vec3().extend(0.0).into();
-    body.angular_momentum = (inertia * spin).as_vec3().extend(0.0).into();
-    Made { shape, body, centre_m, field, points }
+    Made { shape, field, points }
+}
+
+/// Of some particles, by mass.
+fn mean(states: &[ParticleState], members: &[usize], of: impl Fn(&ParticleState) -> Vec3) -> DVec3 {
+    let mass: f64 = members.iter().map(|&i| f64::from(states[i].mass_kg)).sum();
+    members.iter().map(|&i| of(&states[i]).as_dvec3() * f64::from(states[i].mass_kg)).sum::<DVec3>() / mass
+}
+
+/// Inertia about the origin of a unit of mass.
+fn around(r: DVec3) -> DMat3 {
+    DMat3::from_diagonal(DVec3::splat(r.length_squared())) - DMat3::from_cols(r * r.x, r * r.y, r * r.z)
 }
 
 /// inertia^-1 L; zero about axes along which all lies on a line.

@@ -7,6 +7,7 @@
 mod body;
 mod field;
 mod meeting;
+mod remake;
 
 #[cfg(test)]
 mod tests;
@@ -43,7 +44,7 @@ passes! {
     rigid_kick: ["rigid", "rigid_kick"] [Read, Write, Read] KICK;
 }
 
-pub(super) use body::assemble;
+pub(super) use body::{assemble, build};
 
 /// The rigid bodies of a solver.
 #[derive(Clone, Debug)]
@@ -57,6 +58,8 @@ pub(super) struct Rigid {
     shapes: wgpu::Buffer,
     points: wgpu::Buffer,
     field: wgpu::Buffer,
+    /// See [`Assembly::anchors`].
+    pub anchors_host: Vec<[f32; 4]>,
     anchors: wgpu::Buffer,
     scratch: wgpu::Buffer,
     given: wgpu::Buffer,
@@ -111,6 +114,7 @@ impl Rigid {
         Ok(Rigid {
             passes: RigidPasses::new(gpu),
             shapes_host: all.shapes.clone(),
+            anchors_host: all.anchors.clone(),
             least_m: all.least_m,
             bodies: Kept::new(gpu, "solver.rigid.bodies", &all.bodies)?,
             manifolds: Kept::new(gpu, "solver.rigid.manifolds", &vec![Manifold::default(); slots])?,
@@ -127,8 +131,13 @@ impl Rigid {
     }
 
     /// What a rollback and a checkpoint keep.
-    pub fn kept(&self) -> [Kept; 3] {
-        [self.bodies.clone(), self.manifolds.clone(), self.contacts.clone()]
+    pub fn kept(&self) -> [&Kept; 3] {
+        [&self.bodies, &self.manifolds, &self.contacts]
+    }
+
+    /// How many bodies there are.
+    pub fn count(&self) -> usize {
+        self.shapes_host.len()
     }
 
     /// The longest substep, whatever the speeds: contacts are found once in each.

@@ -88,7 +88,7 @@ impl World<'_> {
             seen = self.facing(bodies, other, centre + q * x);
         }
         seen = self.facing(bodies, other, centre + q * x);
-        let rest_m = if other < self.colliders.len() { self.all.shapes[a].rest_m } else { 0.0 };
+        let rest_m = if other < self.colliders.len() { bodies[a].low_m[3] } else { 0.0 };
         let gap_m = if (q * outward).dot(seen.normal) > 0.2 { NOWHERE } else { seen.distance_m - rest_m };
         Found { local: x, gap_m, normal: seen.normal }
     }
@@ -399,7 +399,7 @@ impl World<'_> {
         let quanta = (low / RIGID_QUANTUM_M).round();
         let whole = IVec3::from_slice(&body.whole) + quanta.as_ivec3();
         body.whole = whole.extend(0).into();
-        body.low_m = (low - quanta * RIGID_QUANTUM_M).extend(0.0).into();
+        body.low_m = (low - quanta * RIGID_QUANTUM_M).extend(body.low_m[3]).into();
         body.centre_m = (whole.as_vec3() * RIGID_QUANTUM_M + xyz(&body.low_m)).extend(0.0).into();
         let momentum = momentum(m, shape, m.old_turn);
         let mut omega = m.omega;

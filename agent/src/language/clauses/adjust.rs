@@ -258,10 +258,10 @@ pub fn material(name: &'static str, clause: &mut Clause, draft: &mut Draft) -> R
         let line = match (only, &preset) {
             (Some(scale), Some(preset)) => resemble(draft, object, name, preset, scale, times)?,
             // "The elastic vase jumps" says what it is.
-            (_, None) if part.is_none() && at_s.is_none() && draft.material(object).kind() == "elastic" => {
+            (_, None) if name == "elastic" && part.is_none() && at_s.is_none() && draft.material(object).kind() == "elastic" => {
                 format!("{} is elastic", draft.name(object))
             }
-            (_, preset) => become_stuff(draft, object, part, at_s, (name, &preset.clone().unwrap_or_default())),
+            (_, preset) => become_stuff(draft, object, part, at_s, (name, &preset.clone().or_else(|| Material::of_kind(name)).unwrap_or_default())),
         };
         draft.gloss.push(line);
     }
@@ -459,7 +459,9 @@ pub fn speed(draft: &mut Draft, objects: &[usize], ratio: f64) -> Result<(), Ref
 
 /// Bounciness is the ground's and the colliders' here: "bouncier" takes two fifths of the way to 1, "less bouncy" halves.
 fn bounce(scale: Scale, draft: &mut Draft) {
-    let before = draft.spec.world.ground.restitution;
+    // Of two that meet the larger counts.
+    let own = draft.spec.objects.iter().filter_map(|object| object.material.restitution());
+    let before = own.fold(draft.spec.world.ground.restitution, f64::max);
     let after = if scale.ratio > 1.0 { 1.0 - (1.0 - before) * 0.6f64.powf(scale.ratio.log2()) } else { before * scale.ratio };
     set_restitution(draft, after);
 }
@@ -470,7 +472,14 @@ pub fn set_restitution(draft: &mut Draft, restitution: f64) {
     for collider in &mut draft.spec.colliders {
         collider.restitution = restitution;
     }
-    draft.gloss.push(format!("what is below gives back {} % of the speed", say::short(restitution * 100.0)));
+    let mut who = "what is below".to_owned();
+    for object in &mut draft.spec.objects {
+        if let Some(own) = object.material.restitution_mut() {
+            *own = restitution;
+            who = format!("{who}, and {}", object.name);
+        }
+    }
+    draft.gloss.push(format!("{who} gives back {} % of the speed", say::short(restitution * 100.0)));
 }
 
 fn set_friction(draft: &mut Draft, ground: f64, ratio: f64) {

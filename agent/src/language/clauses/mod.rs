@@ -22,6 +22,11 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     if turns::understand(clause, draft)? {
         return Ok(());
     }
+    let stuff = |s: &Sense| if let Sense::Material(name) = s { Some(*name) } else { None };
+    // "Onto the stone floor" says nothing of the thing.
+    if let Some(name) = clause.take_before(&Sense::Ground, stuff) {
+        draft.gloss.push(format!("that the ground is of {name} is not heeded: \"slippery\" and \"bouncier\" set its friction and its restitution"));
+    }
     world::understand(clause, draft);
     if denied(clause)? {
         return hold::cancel(clause, draft);
@@ -32,10 +37,7 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     if camera::is_about_camera(clause) {
         return camera::understand(clause, draft);
     }
-    let material = clause.take(|s| match s {
-        Sense::Material(name) => Some(*name),
-        _ => None,
-    });
+    let material = clause.take(stuff);
     // A pose first: a drop goes by the lowest point of the turned thing.
     let pose = clause.take(|s| match s {
         Sense::Pose(pose) => Some(*pose),
@@ -142,7 +144,7 @@ pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
     let is = |kind: &str| if kind.ends_with(words) { String::new() } else { format!("{words} is {kind}: ") };
     match what {
         Unbuilt::Liquid => format!("{words} is not built yet; liquids are: water, honey, lava, and elastic stuff: rubber, jelly"),
-        Unbuilt::Rigid => format!("{}rigid bodies are not built yet; {elastic}, and \"much stiffer\" comes near", is("rigid")),
+        Unbuilt::Rigid => format!("{}this one is not built yet; rigid stuff is: wood, steel, stone, glass, plastic", is("rigid")),
         Unbuilt::Plastic => format!("{words} is not built yet; what keeps dents is: clay, dough"),
         Unbuilt::Viscoplastic => format!("{words} is not built yet; thick stuff is: mud, jam"),
         Unbuilt::Grains => format!("{words} is not built yet; grains are: sand, dry soil, snow"),

@@ -61,14 +61,14 @@ fn amounts_are_said_with_units() {
 
 #[test]
 fn materials_to_come_are_refused_by_name() {
-    for (text, name, family) in [("turn it into milk", "milk", "liquid"), ("a steel vase", "steel", "rigid")] {
+    for (text, name, family) in [("turn it into milk", "milk", "liquid"), ("a gold vase", "gold", "rigid")] {
         let reply = Stage::of(&["thing"]).ask(text);
         let said = gloss(&reply);
         assert!(
             matches!(reply, Reply::Refused { .. }) && said.contains(name) && said.contains(family) && said.contains("not built yet"),
             "{text}: {said}"
         );
-        assert!(said.contains("rubber"), "{text}: {said}");
+        assert!(said.contains("water") || said.contains("steel"), "{text}: {said}");
     }
 }
 
@@ -170,7 +170,7 @@ fn an_unknown_noun_is_the_only_object() {
 #[test]
 fn a_refused_clause_refuses_the_turn() {
     let stage = Stage::vase();
-    for text in ["turn it into glass and push it sideways", "push it left and make it of steel", "make it jump and make the table jump"] {
+    for text in ["turn it into milk and push it sideways", "push it left and make it of gold", "make it jump and make the table jump"] {
         let reply = stage.ask(text);
         assert!(gloss(&reply).ends_with("nothing of the turn was done"), "{text}: {reply:?}");
     }

@@ -1,6 +1,7 @@
 //! Rigid bodies on a device: against formulas, against their twin, and among soft matter.
 
 mod bodies;
+mod change;
 mod soft;
 mod twins;
 
