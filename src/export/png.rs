@@ -11,8 +11,11 @@ use std::path::Path;
 /// encoded as they are drawn.
 pub fn encode_png(size: [u32; 2], rgba8: &[u8]) -> Result<Vec<u8>, ExportError> {
     check(size, 4, rgba8.len())?;
-    let rgb: Vec<u8> = rgba8.as_chunks::<4>().0.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
-    let mut png = Vec::new();
+    let mut rgb = vec![0; rgba8.len() / 4 * 3];
+    for (to, from) in rgb.as_chunks_mut::<3>().0.iter_mut().zip(rgba8.as_chunks::<4>().0) {
+        *to = [from[0], from[1], from[2]];
+    }
+    let mut png = Vec::with_capacity(rgb.len() / 4);
     let encoder = PngEncoder::new_with_quality(&mut png, CompressionType::Fast, FilterType::Adaptive);
     encoder.write_image(&rgb, size[0], size[1], ExtendedColorType::Rgb8).map_err(|e| ExportError::Encode { what: "a PNG", reason: e.to_string() })?;
     Ok(png)

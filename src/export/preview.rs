@@ -5,8 +5,11 @@ use super::raster::{check, fitted, shrunk};
 use super::vp8;
 use super::{ExportError, Raster};
 use crate::Frame;
+use std::collections::VecDeque;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, OnceLock};
 
 /// Widest a preview is.
 const WIDTH: u32 = 640;
@@ -18,16 +21,19 @@ const FPS: f64 = 25.0;
 const LAST_MS: u32 = 600;
 
 /// An animated WebP that grows by one frame at a time, lossy. Of each frame only the rectangle that changed
-/// is kept; the file takes its name when it is finished.
+/// is kept; the file takes its name when it is finished. Frames are shrunk and compressed on all cores.
 #[derive(Debug)]
 pub struct Preview {
     file: Pending,
     step: u32,
     frame_ms: u32,
     size: Option<[u32; 2]>,
-    shown: Option<Raster>,
+    /// The last frame that was added, once another thread has shrunk it.
+    shown: Option<Arc<OnceLock<Raster>>>,
+    /// What other threads make of the frames, in order.
+    coming: VecDeque<Receiver<Option<Patch>>>,
     /// The picture not yet written, since its duration is known only when the next one comes.
-    waiting: Option<Patch>,
+    waiting: Option<(Patch, u32)>,
 }
 
 /// A changed rectangle, encoded.
@@ -36,7 +42,6 @@ struct Patch {
     corner: [u32; 2],
     size: [u32; 2],
     chunk: Vec<u8>,
-    duration_ms: u32,
 }
 
 impl Preview {
@@ -44,7 +49,7 @@ impl Preview {
     pub fn create(path: &Path, fps: f64) -> Result<Preview, ExportError> {
         let step = (fps / FPS).round().max(1.0) as u32;
         let frame_ms = (1000.0 * f64::from(step) / fps.max(1e-3)).round().clamp(1.0, 60_000.0) as u32;
-        Ok(Preview { file: Pending::create(path)?, step, frame_ms, size: None, shown: None, waiting: None })
+        Ok(Preview { file: Pending::create(path)?, step, frame_ms, size: None, shown: None, coming: VecDeque::new(), waiting: None })
     }
 
     /// Adds a frame, if it is one of those that are kept. Frames come in order.
@@ -60,25 +65,31 @@ impl Preview {
             }
             Some(_) => {}
         }
-        let picture = shrunk(frame.size, &frame.rgba8, fitted(frame.size, WIDTH));
-        match (changed(self.shown.as_ref(), &picture), &mut self.waiting) {
-            (None, Some(waiting)) => waiting.duration_ms += self.frame_ms,
-            (changed, _) => {
-                self.flush()?;
-                let [x, y, width, height] = changed.unwrap_or([0, 0, 1, 1]);
-                let chunk = encode(&picture, [x, y, width, height]);
-                self.waiting = Some(Patch { corner: [x, y], size: [width, height], chunk, duration_ms: self.frame_ms });
-            }
+        while self.coming.len() > 2 * rayon::current_num_threads() {
+            self.take()?;
         }
-        self.shown = Some(picture);
+        let (sender, receiver) = channel();
+        let (now, size, rgba8) = (Arc::<OnceLock<Raster>>::default(), frame.size, frame.rgba8.clone());
+        let before = self.shown.replace(now.clone());
+        self.coming.push_back(receiver);
+        // Threads take these up in order, so the frame before is done or being shrunk when it is waited for.
+        rayon::spawn_fifo(move || {
+            let now = now.get_or_init(|| shrunk(size, &rgba8, fitted(size, WIDTH)));
+            drop(rgba8);
+            // The receiver is gone only when the preview was given up.
+            let _ = sender.send(patch(before.as_ref().map(|before| before.wait()), now));
+        });
         Ok(())
     }
 
     /// Writes the last picture and the sizes, and gives the file its name. Nothing appears where no
     /// frame came.
     pub fn finish(mut self) -> Result<(), ExportError> {
-        let Some(waiting) = &mut self.waiting else { return Ok(()) };
-        waiting.duration_ms += LAST_MS;
+        while !self.coming.is_empty() {
+            self.take()?;
+        }
+        let Some((_, duration_ms)) = &mut self.waiting else { return Ok(()) };
+        *duration_ms += LAST_MS;
         self.flush()?;
         self.file.with(|file| {
             let length = file.stream_position()?;
@@ -86,6 +97,21 @@ impl Preview {
             file.write_all(&u32::try_from(length - 8).unwrap_or(u32::MAX).to_le_bytes())
         })?;
         self.file.finish()
+    }
+
+    /// Waits for the oldest frame that other threads work on.
+    fn take(&mut self) -> Result<(), ExportError> {
+        // A thread that gave nothing has panicked, which has ended the process.
+        let patch = self.coming.pop_front().and_then(|coming| coming.recv().ok()).flatten();
+        match (patch, &mut self.waiting) {
+            (Some(patch), _) => {
+                self.flush()?;
+                self.waiting = Some((patch, self.frame_ms));
+            }
+            (None, Some((_, duration_ms))) => *duration_ms += self.frame_ms,
+            (None, None) => {}
+        }
+        Ok(())
     }
 
     /// RIFF header (its size is written at the end), VP8X with the animation flag, ANIM: background
@@ -107,11 +133,11 @@ impl Preview {
 
     /// Writes the waiting picture as an ANMF chunk that replaces what it covers.
     fn flush(&mut self) -> Result<(), ExportError> {
-        let Some(patch) = self.waiting.take() else { return Ok(()) };
+        let Some((patch, duration_ms)) = self.waiting.take() else { return Ok(()) };
         self.file.with(|file| {
             file.write_all(b"ANMF")?;
             file.write_all(&(16 + patch.chunk.len() as u32).to_le_bytes())?;
-            for value in [patch.corner[0] / 2, patch.corner[1] / 2, patch.size[0] - 1, patch.size[1] - 1, patch.duration_ms.min(0xff_ffff)] {
+            for value in [patch.corner[0] / 2, patch.corner[1] / 2, patch.size[0] - 1, patch.size[1] - 1, duration_ms.min(0xff_ffff)] {
                 file.write_all(&u24(value))?;
             }
             const NO_BLENDING: u8 = 0x02;
@@ -119,6 +145,12 @@ impl Preview {
             file.write_all(&patch.chunk)
         })
     }
+}
+
+/// What changed between two pictures, encoded; all of a first one; none where nothing did.
+fn patch(before: Option<&Raster>, now: &Raster) -> Option<Patch> {
+    let [x, y, width, height] = changed(before, now)?;
+    Some(Patch { corner: [x, y], size: [width, height], chunk: encode(now, [x, y, width, height]) })
 }
 
 /// The low three bytes, as the container wants its numbers.

@@ -58,18 +58,15 @@ pub(super) fn shrunk(size: [u32; 2], rgba8: &[u8], to: [u32; 2]) -> Raster {
     }
     let [width, height] = [size[0] as usize, size[1] as usize];
     let (columns, rows) = (covered(size[0], to[0]), covered(size[1], to[1]));
-    let narrow: Vec<[f32; 3]> = (0..height)
-        .flat_map(|y| {
-            let row = &rgba8[y * width * 4..(y + 1) * width * 4];
-            columns.iter().map(move |c| c.mean(|x| std::array::from_fn(|k| LINEAR[usize::from(row[x * 4 + k])])))
-        })
-        .collect();
+    let mut narrow = Vec::with_capacity(columns.len() * height);
+    for row in rgba8.as_chunks::<4>().0.chunks_exact(width) {
+        narrow.extend(columns.iter().map(|c| c.mean(|x| [row[x][0], row[x][1], row[x][2]].map(|v| LINEAR[usize::from(v)]))));
+    }
     let mut out = Vec::with_capacity(to[0] as usize * to[1] as usize * 4);
     for row in &rows {
         for x in 0..columns.len() {
-            let colour = row.mean(|y| narrow[y * columns.len() + x]);
-            out.extend(colour.map(to_srgb8));
-            out.push(255);
+            let [r, g, b] = row.mean(|y| narrow[y * columns.len() + x]).map(to_srgb8);
+            out.extend([r, g, b, 255]);
         }
     }
     Raster { size: to, rgba8: out }
@@ -83,10 +80,12 @@ struct Cover {
 
 impl Cover {
     fn mean(&self, value: impl Fn(usize) -> [f32; 3]) -> [f32; 3] {
-        self.shares.iter().enumerate().fold([0.0; 3], |sum, (i, share)| {
+        let mut sum = [0.0; 3];
+        for (i, share) in self.shares.iter().enumerate() {
             let v = value(self.first + i);
-            std::array::from_fn(|k| sum[k] + share * v[k])
-        })
+            (0..3).for_each(|k| sum[k] += share * v[k]);
+        }
+        sum
     }
 }
 
@@ -104,14 +103,27 @@ fn covered(from: u32, to: u32) -> Vec<Cover> {
 
 static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| srgb_to_linear(i as f32 / 255.0)));
 
+/// Linear light from which on each 8-bit value is the nearest.
+static FROM: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|i| if i == 0 { f32::NEG_INFINITY } else { srgb_to_linear((i as f32 - 0.5) / 255.0) }));
+
+/// The 8-bit value at the start of each of these equal parts of linear light from 0 to 1: the search goes on from there.
+const PARTS: usize = 4096;
+static START: LazyLock<[u8; PARTS + 1]> =
+    LazyLock::new(|| std::array::from_fn(|i| (FROM.partition_point(|from| *from <= i as f32 / PARTS as f32) - 1) as u8));
+
 /// sRGB to linear light (IEC 61966-2-1); values beyond 0 to 1 follow the same curve.
 pub(super) fn srgb_to_linear(v: f32) -> f32 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
+/// The nearest 8-bit value of linear light.
 fn to_srgb8(v: f32) -> u8 {
-    let encoded = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
-    (encoded * 255.0 + 0.5).clamp(0.0, 255.0) as u8
+    let mut nearest = START[((v * PARTS as f32) as usize).min(PARTS)];
+    while nearest < 255 && v >= FROM[usize::from(nearest) + 1] {
+        nearest += 1;
+    }
+    nearest
 }
 
 #[cfg(test)]
@@ -133,6 +145,18 @@ mod tests {
     fn means_are_of_light_not_of_numbers() {
         let board = Raster { size: [2, 2], rgba8: [[0, 0, 0, 255], [255; 4], [255; 4], [0, 0, 0, 255]].concat() };
         assert_eq!(shrunk([2, 2], &board.rgba8, [1, 1]).rgba8, [188, 188, 188, 255]);
+    }
+
+    #[test]
+    fn light_goes_to_the_nearest_value() {
+        let formula = |v: f32| {
+            let encoded = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+            encoded * 255.0
+        };
+        for i in 0..=100_000 {
+            let v = i as f32 / 100_000.0;
+            assert!((f32::from(to_srgb8(v)) - formula(v)).abs() < 0.502, "{v}: {} for {}", to_srgb8(v), formula(v));
+        }
     }
 
     #[test]

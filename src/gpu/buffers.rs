@@ -2,6 +2,7 @@
 
 use super::{Gpu, GpuError};
 use bytemuck::Pod;
+use std::sync::{Mutex, PoisonError};
 
 /// Everything a storage buffer of ours may be used for.
 const STORAGE: wgpu::BufferUsages =
@@ -40,11 +41,10 @@ impl Gpu {
 
     /// Reads `count` values from the start of a buffer, waiting for all work submitted before.
     pub fn read<T: Pod>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<T>, GpuError> {
-        Readback::start(self, &[(buffer, (count * size_of::<T>()) as u64)]).wait(self).map(|mut parts| parts.remove(0)).map(|bytes| {
+        let arrived = Readback::start(self, &[(buffer, (count * size_of::<T>()) as u64)]).arrive(self)?;
+        arrived.part(0, |bytes| {
             let mut values = vec![T::zeroed(); count];
-            let target: &mut [u8] = bytemuck::cast_slice_mut(&mut values);
-            let length = target.len();
-            target.copy_from_slice(&bytes[..length]);
+            bytemuck::cast_slice_mut(&mut values).copy_from_slice(bytes);
             values
         })
     }
@@ -55,10 +55,37 @@ impl Gpu {
     }
 }
 
+/// Bytes that free buffers for read-backs may hold together.
+const STAGING_BYTES: u64 = 256 << 20;
+
+/// Buffers that read-backs land in, used again: a new one each time would be mapped and cleared each time.
+#[derive(Debug, Default)]
+pub(super) struct Staging(Mutex<Vec<wgpu::Buffer>>);
+
+impl Staging {
+    /// A free buffer of this size, or a new one.
+    fn take(&self, gpu: &Gpu, size: u64) -> wgpu::Buffer {
+        let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(at) = free.iter().position(|buffer| buffer.size() == size) {
+            return free.swap_remove(at);
+        }
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some("read back"), size, usage, mapped_at_creation: false })
+    }
+
+    fn put(&self, buffer: wgpu::Buffer) {
+        let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let held: u64 = free.iter().map(wgpu::Buffer::size).sum();
+        if held + buffer.size() <= STAGING_BYTES {
+            free.push(buffer);
+        }
+    }
+}
+
 /// Bytes on their way back from the device. Started early, waited for late, so that the queue stays full.
 #[derive(Debug)]
 pub struct Readback {
-    staging: Vec<(wgpu::Buffer, u64)>,
+    parts: Vec<(wgpu::Buffer, u64)>,
     submission: wgpu::SubmissionIndex,
 }
 
@@ -66,34 +93,59 @@ impl Readback {
     /// Copies the first bytes of each buffer aside, in order with what was submitted before.
     pub fn start(gpu: &Gpu, sources: &[(&wgpu::Buffer, u64)]) -> Readback {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
-        let staging: Vec<_> = sources
+        let parts: Vec<_> = sources
             .iter()
             .map(|(source, bytes)| {
                 let size = bytes.next_multiple_of(4).max(4);
-                let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-                let target = gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some("read back"), size, usage, mapped_at_creation: false });
+                // Few sizes, so that most are found again.
+                let target = gpu.staging.take(gpu, size.next_power_of_two().min(size.next_multiple_of(1 << 20)));
                 encoder.copy_buffer_to_buffer(source, 0, &target, 0, size);
                 (target, *bytes)
             })
             .collect();
         let submission = gpu.queue.submit([encoder.finish()]);
-        for (buffer, _) in &staging {
-            // An error here means a lost device, which `wait` reports when it maps the range.
+        for (buffer, _) in &parts {
+            // An error here means a lost device, which shows when the range is read.
             buffer.map_async(wgpu::MapMode::Read, .., |_| {});
         }
-        Readback { staging, submission }
+        Readback { parts, submission }
+    }
+
+    /// Waits for the copies, which can then be read without a further one, on any thread.
+    pub fn arrive(self, gpu: &Gpu) -> Result<Arrived, GpuError> {
+        let poll = wgpu::PollType::Wait { submission_index: Some(self.submission), timeout: None };
+        gpu.device.poll(poll).map_err(|e| gpu.lost(e))?;
+        Ok(Arrived { parts: self.parts, gpu: gpu.clone() })
     }
 
     /// The bytes of each source, in the order they were given.
     pub fn wait(self, gpu: &Gpu) -> Result<Vec<Vec<u8>>, GpuError> {
-        let poll = wgpu::PollType::Wait { submission_index: Some(self.submission), timeout: None };
-        gpu.device.poll(poll).map_err(|e| gpu.lost(e))?;
-        self.staging
-            .iter()
-            .map(|(buffer, bytes)| {
-                let view = buffer.get_mapped_range(..).map_err(|e| gpu.lost(e))?;
-                Ok(view[..*bytes as usize].to_vec())
-            })
-            .collect()
+        let arrived = self.arrive(gpu)?;
+        (0..arrived.parts.len()).map(|index| arrived.part(index, <[u8]>::to_vec)).collect()
+    }
+}
+
+/// Bytes that are back, still in memory that the device wrote.
+#[derive(Debug)]
+pub struct Arrived {
+    parts: Vec<(wgpu::Buffer, u64)>,
+    gpu: Gpu,
+}
+
+impl Arrived {
+    /// What `read` makes of the bytes of one source.
+    pub fn part<R>(&self, index: usize, read: impl FnOnce(&[u8]) -> R) -> Result<R, GpuError> {
+        let (buffer, bytes) = &self.parts[index];
+        let view = buffer.get_mapped_range(..).map_err(|e| self.gpu.lost(e))?;
+        Ok(read(&view[..*bytes as usize]))
+    }
+}
+
+impl Drop for Arrived {
+    fn drop(&mut self) {
+        for (buffer, _) in self.parts.drain(..) {
+            buffer.unmap();
+            self.gpu.staging.put(buffer);
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! Opening a device, and the one enum that decides which form of a pass runs on it.
 
-use std::sync::OnceLock;
+use super::buffers::Staging;
+use super::kernel::Compiled;
+use std::sync::{Arc, OnceLock};
 
 /// Which form of a pass suits the device. Decided once, by the kind of adapter, never by a timing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -81,6 +83,10 @@ pub struct Gpu {
     pub subgroup_lanes: (u32, u32),
     /// Whether timestamps may be written inside an encoder.
     pub can_time: bool,
+    /// What was compiled on it.
+    pub(super) compiled: Arc<Compiled>,
+    /// What read-backs land in.
+    pub(super) staging: Arc<Staging>,
 }
 
 impl Gpu {
@@ -97,6 +103,8 @@ impl Gpu {
             tier: tier_of(&info),
             subgroup_lanes: (info.subgroup_min_size, info.subgroup_max_size),
             can_time: features.contains(TIMING),
+            compiled: Arc::default(),
+            staging: Arc::default(),
             device,
             queue,
             info,
@@ -128,9 +136,12 @@ const TIMING: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Featu
 /// Features without which no pass of ours runs.
 const REQUIRED: wgpu::Features = wgpu::Features::SUBGROUP.union(wgpu::Features::IMMEDIATES);
 
-fn instance() -> wgpu::Instance {
+/// Every way to a device that our passes can run on.
+const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN.union(wgpu::Backends::METAL).union(wgpu::Backends::DX12);
+
+fn instance(backends: wgpu::Backends) -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+    descriptor.backends = backends;
     // Indirect counts come from our own kernels; checking each one costs more than the dispatch.
     descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
     wgpu::Instance::new(descriptor)
@@ -145,7 +156,7 @@ fn tier_of(info: &wgpu::AdapterInfo) -> Tier {
 
 /// Every adapter of this machine, for `doctor`.
 pub fn list_adapters() -> Vec<wgpu::AdapterInfo> {
-    let instance = instance();
+    let instance = instance(BACKENDS);
     pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all())).iter().map(wgpu::Adapter::get_info).collect()
 }
 
@@ -160,17 +171,29 @@ fn rank(kind: wgpu::DeviceType) -> u32 {
     }
 }
 
-async fn open(request: &DeviceRequest) -> Result<Gpu, GpuError> {
-    let instance = instance();
-    let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+/// Whether an adapter is what was asked for, and able.
+fn fits(adapter: &wgpu::Adapter, request: &DeviceRequest) -> bool {
+    let info = adapter.get_info();
+    let name_fits = request.name_contains.as_ref().is_none_or(|want| info.name.to_lowercase().contains(&want.to_lowercase()));
+    name_fits && (!request.cpu || info.device_type == wgpu::DeviceType::Cpu) && adapter.features().contains(REQUIRED)
+}
+
+/// The adapters behind some backends, the best first.
+async fn adapters_of(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    let mut adapters = instance(backends).enumerate_adapters(backends).await;
     adapters.sort_by_key(|a| rank(a.get_info().device_type));
+    adapters
+}
+
+async fn open(request: &DeviceRequest) -> Result<Gpu, GpuError> {
+    // Each backend takes its time to answer: the others are asked only where Vulkan has no GPU that fits.
+    let mut adapters = adapters_of(wgpu::Backends::VULKAN).await;
+    if !adapters.iter().any(|a| fits(a, request) && (request.cpu || tier_of(&a.get_info()) == Tier::Gpu)) {
+        adapters.extend(adapters_of(BACKENDS.difference(wgpu::Backends::VULKAN)).await);
+        adapters.sort_by_key(|a| rank(a.get_info().device_type));
+    }
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
-    let fits = |adapter: &wgpu::Adapter| {
-        let info = adapter.get_info();
-        let name_fits = request.name_contains.as_ref().is_none_or(|want| info.name.to_lowercase().contains(&want.to_lowercase()));
-        name_fits && (!request.cpu || info.device_type == wgpu::DeviceType::Cpu) && adapter.features().contains(REQUIRED)
-    };
-    let Some(adapter) = adapters.iter().find(|a| fits(a)) else {
+    let Some(adapter) = adapters.iter().find(|a| fits(a, request)) else {
         let wanted = match (&request.name_contains, request.cpu) {
             (Some(name), _) => format!("a device whose name contains \"{name}\""),
             (None, true) => "a software adapter (--cpu)".to_owned(),

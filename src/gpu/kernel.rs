@@ -1,7 +1,10 @@
 //! One compute pass: its WGSL, its constants, what it binds.
 
 use super::Gpu;
+use rayon::prelude::*;
+use std::collections::HashMap;
 use std::fmt::Write;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// How a pass uses one of its bindings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,9 +78,38 @@ pub struct Kernel {
     layout: wgpu::BindGroupLayout,
 }
 
+/// Passes that are kept compiled. Those that a program writes differ from scene to scene, so there may be ever more.
+const KEPT: usize = 512;
+
+/// The passes that a device has compiled, by what they were compiled from.
+#[derive(Debug, Default)]
+pub(super) struct Compiled(Mutex<HashMap<blake3::Hash, Arc<OnceLock<Kernel>>>>);
+
+impl Compiled {
+    /// The place of one pass: whoever comes first compiles it, others wait for that one alone.
+    fn place(&self, key: blake3::Hash) -> Arc<OnceLock<Kernel>> {
+        let mut places = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if places.len() >= KEPT && !places.contains_key(&key) {
+            places.clear();
+        }
+        places.entry(key).or_default().clone()
+    }
+}
+
+/// Everything that a pipeline is made of.
+fn key(source: &KernelSource, text: &str) -> blake3::Hash {
+    let mut hash = blake3::Hasher::new();
+    for part in [source.label, source.entry, text] {
+        hash.update(&(part.len() as u64).to_le_bytes()).update(part.as_bytes());
+    }
+    let writes: Vec<u8> = source.bindings.iter().map(|access| u8::from(*access == Access::Write)).collect();
+    hash.update(&source.immediate_bytes.to_le_bytes()).update(&writes);
+    hash.finalize()
+}
+
 impl Gpu {
-    /// Compiles a pass. Shader text is ours alone and is validated by the tests, so this cannot fail
-    /// for any input of a user.
+    /// Compiles a pass, once for each device. Shader text is ours alone and is validated by the tests, so this cannot
+    /// fail for any input of a user.
     pub fn kernel(&self, source: &KernelSource) -> Kernel {
         self.kernel_with(source, "")
     }
@@ -85,6 +117,16 @@ impl Gpu {
     /// As [`Gpu::kernel`], with further functions that were written by the program.
     pub fn kernel_with(&self, source: &KernelSource, functions: &str) -> Kernel {
         let text = source.wgsl() + functions;
+        let place = self.compiled.place(key(source, &text));
+        place.get_or_init(|| self.compile(source, text)).clone()
+    }
+
+    /// Compiles passes side by side, so that those who ask for one later need not wait.
+    pub fn prepare(&self, sources: &[KernelSource]) {
+        sources.par_iter().for_each(|source| drop(self.kernel(source)));
+    }
+
+    fn compile(&self, source: &KernelSource, text: String) -> Kernel {
         let module = self
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(source.label), source: wgpu::ShaderSource::Wgsl(text.into()) });
@@ -124,5 +166,35 @@ fn layout_entry(binding: u32, access: Access) -> wgpu::BindGroupLayoutEntry {
         visibility: wgpu::ShaderStages::COMPUTE,
         ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
         count: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pass_is_compiled_once_and_every_difference_counts() {
+        let gpu = Gpu::shared_for_tests().unwrap();
+        let gpu = Gpu { compiled: Arc::default(), ..gpu };
+        let source = KernelSource {
+            label: "test.kept",
+            entry: "main",
+            parts: vec![(
+                "kept.wgsl",
+                "@group(0) @binding(0) var<storage, read_write> a: array<u32>;\n@compute @workgroup_size(1) fn main() { a[0] = ONE; }",
+            )],
+            constants: vec![("ONE", Constant::U32(1))],
+            bindings: vec![Access::Write],
+            immediate_bytes: 0,
+        };
+        let kept = || gpu.compiled.0.lock().unwrap().len();
+        let first = gpu.kernel(&source);
+        gpu.prepare(&[source.clone(), source.clone()]);
+        assert_eq!((first.pipeline, kept()), (gpu.clone().kernel(&source).pipeline, 1));
+        gpu.kernel(&KernelSource { constants: vec![("ONE", Constant::U32(2))], ..source.clone() });
+        gpu.kernel(&KernelSource { label: "test.other", ..source.clone() });
+        gpu.kernel_with(&source, "fn two() -> u32 { return 2u; }");
+        assert_eq!(kept(), 4);
     }
 }

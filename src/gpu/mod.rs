@@ -15,7 +15,7 @@ mod sort;
 #[cfg(test)]
 mod twin;
 
-pub use buffers::Readback;
+pub use buffers::{Arrived, Readback};
 pub use calibrate::Samples;
 pub use device::{DeviceRequest, Gpu, GpuError, Tier, list_adapters};
 pub use extent::{Blocks, Extent, ExtentPass, THREADS, fold};

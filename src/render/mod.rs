@@ -20,7 +20,7 @@ mod tests;
 
 pub use bench::{Bench, bench_recording, bench_render, bench_sort, bench_with};
 pub use passes::kernels;
-pub use picture::{Image, Picture};
+pub use picture::{Developed, Image, Picture};
 pub use profile::Profile;
 pub use renderer::{GroundLook, RenderOptions, Renderer};
 pub use view::{View, parse_colour};

@@ -152,6 +152,7 @@ pub(super) struct Passes {
 
 impl Passes {
     pub fn new(gpu: &Gpu, tier: Tier) -> Passes {
+        gpu.prepare(&sources());
         let scan = Scan::with_tier(gpu, tier);
         let [project, compact, gather, emit, ranges] = sources().map(|s| gpu.kernel(&s));
         Passes {

@@ -2,7 +2,7 @@
 
 use super::renderer::{Frame, Shared};
 use super::uniform::Planes;
-use crate::gpu::{Extent, Gpu, GpuError, Readback};
+use crate::gpu::{Arrived, Extent, Gpu, GpuError, Readback};
 use std::sync::Arc;
 
 /// A frame that was submitted. Reading it waits; the device does not.
@@ -35,24 +35,54 @@ impl Picture {
         Picture { frame: Some(frame), readback: Some(readback), shared }
     }
 
-    /// Waits for the picture. Where the frame had more pairs of bin and Gaussian than there was room
-    /// for, room is made and the frame drawn again from its projected Gaussians, which are still there.
-    pub fn read(mut self, gpu: &Gpu) -> Result<Image, GpuError> {
+    /// Waits for the picture.
+    pub fn read(self, gpu: &Gpu) -> Result<Image, GpuError> {
+        self.develop(gpu)?.image()
+    }
+
+    /// Waits for the picture, which lies in memory shared with the device then. Where the frame had more pairs of
+    /// bin and Gaussian than there was room for, room is made and the frame drawn again from its projected
+    /// Gaussians, which are still there.
+    pub fn develop(mut self, gpu: &Gpu) -> Result<Developed, GpuError> {
         let (Some(mut frame), Some(mut readback)) = (self.frame.take(), self.readback.take()) else {
             return Err(gpu.lost("the picture was already read"));
         };
         loop {
-            let parts = readback.wait(gpu)?;
-            let extent: Vec<u32> = bytemuck::pod_collect_to_vec(&parts[1]);
-            let (drawn, wanted) = (extent[0], extent[1]);
+            let arrived = readback.arrive(gpu)?;
+            let [drawn, wanted]: [u32; 2] = arrived.part(1, |extent| bytemuck::pod_read_unaligned(&extent[..8]))?;
             if drawn == wanted {
-                let image = Image::from_bytes(&parts[0], &frame.planes);
+                let planes = frame.planes;
                 self.shared.put(frame.buffers);
-                return Ok(image);
+                return Ok(Developed { arrived, planes });
             }
             frame.redraw(gpu, &self.shared.passes, self.shared.wants_pairs(wanted))?;
             readback = read_back(gpu, &frame);
         }
+    }
+}
+
+/// A finished picture in memory that the device wrote. Copying it out can be left to another thread.
+#[derive(Debug)]
+pub struct Developed {
+    arrived: Arrived,
+    planes: Planes,
+}
+
+impl Developed {
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.planes.size
+    }
+
+    /// What `read` makes of [`Image::rgba8`].
+    pub fn rgba8<R>(&self, read: impl FnOnce(&[u8]) -> R) -> Result<R, GpuError> {
+        let end = 4 * self.planes.starts()[0] as usize;
+        self.arrived.part(0, |bytes| read(&bytes[..end]))
+    }
+
+    /// All planes.
+    pub fn image(&self) -> Result<Image, GpuError> {
+        self.arrived.part(0, |bytes| Image::from_bytes(bytes, &self.planes))
     }
 }
 

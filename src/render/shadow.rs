@@ -133,6 +133,7 @@ impl Shadow {
             Pass::Receive => vec![&receiver, &bounds, &pyramid, &roof, geometry],
             Pass::Plane => vec![&bounds, &pyramid, &roof, &ground_map],
         };
+        gpu.prepare(&Pass::ALL.map(|pass| pass.source(pyramid_group(gpu))));
         let passes = Pass::ALL.into_iter().map(|pass| {
             let kernel = gpu.kernel(&pass.source(pyramid_group(gpu)));
             let bindings = gpu.bind(&kernel, &buffers(pass));

@@ -1,9 +1,10 @@
 //! A solver's state as bytes, from which another goes on to the same bits.
 
 use super::core::Solver;
-use super::state::ParticleState;
+use super::state::{PLANES, ParticleState, unpack};
 use super::substance::Substance;
 use super::types::SolverError;
+use crate::gpu::{Gpu, Readback};
 use bytemuck::{Pod, Zeroable};
 
 /// First bytes of every checkpoint.
@@ -23,26 +24,57 @@ struct Header {
     bodies: u64,
 }
 
+/// A state on its way back from the device; [`Checkpoint::bytes`] can wait for it on another thread.
+#[derive(Debug)]
+pub struct Checkpoint {
+    head: Vec<u8>,
+    /// Of rigid bodies: the host has them.
+    anchors: Vec<u8>,
+    count: usize,
+    readback: Readback,
+    gpu: Gpu,
+}
+
+impl Checkpoint {
+    /// The whole state, from which the same bits go on.
+    pub fn bytes(self) -> Result<Vec<u8>, SolverError> {
+        let parts = self.readback.wait(&self.gpu)?;
+        let [kinematics, matter, unstressed, beside @ ..] = parts.as_slice() else {
+            return Err(SolverError::Checkpoint { what: "a state without particles".to_owned() });
+        };
+        let mut bytes = self.head;
+        bytes.extend_from_slice(bytemuck::cast_slice(&unpack(kinematics, matter, self.count)));
+        bytes.extend_from_slice(unstressed);
+        bytes.extend_from_slice(&self.anchors);
+        beside.iter().for_each(|part| bytes.extend_from_slice(part));
+        Ok(bytes)
+    }
+}
+
 impl Solver {
     /// The whole state between two segments. Particles are in their original order: the order in which
     /// they are summed follows from where they are, and is found again by the next sort.
     pub fn checkpoint(&self) -> Result<Vec<u8>, SolverError> {
+        self.start_checkpoint()?.bytes()
+    }
+
+    /// As [`Solver::checkpoint`], without waiting for it: the solver may go on meanwhile.
+    pub fn start_checkpoint(&self) -> Result<Checkpoint, SolverError> {
         let count = self.params.count;
         let table = serde_json::to_vec(&self.laws.substances).map_err(|e| SolverError::Checkpoint { what: e.to_string() })?;
         let table_bytes = table.len() as u64;
         let bodies = self.rigid.as_ref().map_or(0, |r| r.count() as u64);
         let header = Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s, table_bytes, bodies };
-        let mut bytes = bytemuck::bytes_of(&header).to_vec();
-        bytes.extend(table);
-        bytes.extend_from_slice(bytemuck::cast_slice(&self.states()?));
-        let unstressed: Vec<[f32; 12]> = self.gpu.read(&self.unstressed, count as usize)?;
-        bytes.extend_from_slice(bytemuck::cast_slice(&unstressed));
+        let head = [bytemuck::bytes_of(&header), &table].concat();
         // A change may have made them on the way.
-        bytes.extend_from_slice(bytemuck::cast_slice(self.rigid.as_ref().map_or(&[][..], |r| &r.anchors_host)));
-        for kept in self.kept() {
-            bytes.extend(kept.read(&self.gpu)?);
-        }
-        Ok(bytes)
+        let anchors = bytemuck::cast_slice(self.rigid.as_ref().map_or(&[][..], |r| &r.anchors_host)).to_vec();
+        let state = &self.buffers[self.current];
+        let plane_bytes = (PLANES * 16 * count as usize) as u64;
+        let unstressed_bytes = (size_of::<[f32; 12]>() * count as usize) as u64;
+        let mut sources = vec![(&state.kinematics, plane_bytes), (&state.matter, plane_bytes), (&self.unstressed, unstressed_bytes)];
+        sources.extend(self.kept().map(|kept| (&kept.live, kept.bytes())));
+        let readback = Readback::start(&self.gpu, &sources);
+        Ok(Checkpoint { head, anchors, count: count as usize, readback, gpu: self.gpu.clone() })
     }
 
     /// Goes back, or forward, to a checkpoint of a solver with the same settings and particles.

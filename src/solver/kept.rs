@@ -36,11 +36,6 @@ impl Kept {
         recording.copy(&self.backup, &self.live, self.bytes);
     }
 
-    /// The present content, for a checkpoint.
-    pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
-        gpu.read(&self.live, self.bytes as usize)
-    }
-
     /// Content from a checkpoint, of [`Kept::bytes`] bytes.
     pub fn write(&self, gpu: &Gpu, content: &[u8]) {
         gpu.upload(&self.live, content);

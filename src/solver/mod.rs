@@ -41,6 +41,7 @@ mod twin;
 
 pub use bench::{BenchReport, bench_sph, bench_sph_second, bench_substep};
 pub use change::Moduli;
+pub use checkpoint::Checkpoint;
 pub use core::Solver;
 pub use fields::velocity_change;
 pub use substance::{Activation, Substance, liquid_bulk_pa};

@@ -22,6 +22,7 @@ macro_rules! passes {
 
         impl $set {
             pub fn new(gpu: &$crate::gpu::Gpu) -> $set {
+                gpu.prepare(&kernels());
                 $set { $($name: gpu.kernel(&sources::$name()),)* }
             }
         }

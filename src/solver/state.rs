@@ -4,7 +4,7 @@
 use super::constants::REST_CELLS;
 use super::obstacles::{ColliderRecord, distance_m};
 use super::types::{Particles, SolverError};
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, Readback};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
 
@@ -166,30 +166,36 @@ impl StateBuffers {
 
     /// Reads all particles, back in their original order.
     pub fn download(&self, gpu: &Gpu, count: usize) -> Result<Vec<ParticleState>, GpuError> {
-        let n = count;
-        let k: Vec<[f32; 4]> = gpu.read(&self.kinematics, PLANES * n)?;
-        let m: Vec<[f32; 4]> = gpu.read(&self.matter, PLANES * n)?;
-        let mut states = vec![ParticleState::default(); n];
-        for i in 0..n {
-            let index = m[3 * n + i][0].to_bits();
-            let (q, r, s) = (k[n + i], k[2 * n + i], k[3 * n + i]);
-            let (a, b, c) = (m[i], m[n + i], m[2 * n + i]);
-            states[index as usize] = ParticleState {
-                position_m: Vec3::from_slice(&k[i]),
-                mass_kg: k[i][3],
-                velocity_m_s: Vec3::from_slice(&q),
-                index,
-                affine: [q[3], r[0], r[1], r[2], r[3], s[0], s[1], s[2], s[3]],
-                deformation: [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]],
-                mu_pa: a[3],
-                lambda_pa: b[3],
-                volume_m3: c[3],
-                tag: m[3 * n + i][1].to_bits(),
-                rest_m: m[3 * n + i][2],
-                history: m[3 * n + i][3],
-                padding: [0.0; 2],
-            };
-        }
-        Ok(states)
+        let bytes = (PLANES * 16 * count) as u64;
+        let parts = Readback::start(gpu, &[(&self.kinematics, bytes), (&self.matter, bytes)]).wait(gpu)?;
+        Ok(unpack(&parts[0], &parts[1], count))
     }
+}
+
+/// All particles in their original order, from the bytes of both buffers.
+pub(super) fn unpack(kinematics: &[u8], matter: &[u8], count: usize) -> Vec<ParticleState> {
+    let n = count;
+    let (k, m): (Vec<[f32; 4]>, Vec<[f32; 4]>) = (bytemuck::pod_collect_to_vec(kinematics), bytemuck::pod_collect_to_vec(matter));
+    let mut states = vec![ParticleState::default(); n];
+    for i in 0..n {
+        let index = m[3 * n + i][0].to_bits();
+        let (q, r, s) = (k[n + i], k[2 * n + i], k[3 * n + i]);
+        let (a, b, c) = (m[i], m[n + i], m[2 * n + i]);
+        states[index as usize] = ParticleState {
+            position_m: Vec3::from_slice(&k[i]),
+            mass_kg: k[i][3],
+            velocity_m_s: Vec3::from_slice(&q),
+            index,
+            affine: [q[3], r[0], r[1], r[2], r[3], s[0], s[1], s[2], s[3]],
+            deformation: [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]],
+            mu_pa: a[3],
+            lambda_pa: b[3],
+            volume_m3: c[3],
+            tag: m[3 * n + i][1].to_bits(),
+            rest_m: m[3 * n + i][2],
+            history: m[3 * n + i][3],
+            padding: [0.0; 2],
+        };
+    }
+    states
 }

@@ -2,13 +2,15 @@
 //! delivered in order.
 
 use super::EngineError;
-use crate::gpu::{Gpu, Readback};
-use crate::render::Picture;
+use super::keeper::{Keeper, Simulated};
+use crate::gpu::{Arrived, Gpu, Readback};
+use crate::render::{Developed, Picture};
 use crate::world::measure::{Bodies, MotionFrame, Row, measure};
 use crate::{Frame, Sink, export};
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
 
 /// Frames whose read-backs may be under way at once: enough to hide the copy, few enough to show soon.
 const IN_FLIGHT: usize = 3;
@@ -21,9 +23,11 @@ struct Pending {
     picture: Option<Picture>,
 }
 
-/// An encoded picture.
-struct Encoded {
-    frame: Frame,
+/// A frame that other threads have done with.
+struct Done {
+    index: u32,
+    measured: Option<Measured>,
+    frame: Option<Frame>,
 }
 
 /// A frame's motion, back on the host.
@@ -34,26 +38,48 @@ pub(super) struct Measured {
     pub nonfinite: u64,
 }
 
-/// The pipeline from the device to the sink.
+/// What is delivered next.
+enum Awaited {
+    Frame(u32),
+    /// The end of a segment, once its frames are there.
+    End(Box<Simulated>),
+}
+
+/// What came out of the frames that were simulated.
+#[derive(Default)]
+pub(super) struct Delivered {
+    /// Rows of each frame, in order.
+    pub rows: Vec<Vec<Row>>,
+    /// Most particles of any frame with a value that is not a number.
+    pub nonfinite: u64,
+    /// How long the run was held up by encoders and the sink.
+    pub held_up: Duration,
+}
+
+/// The pipeline from the device to the sink and the store.
 pub(super) struct Delivery<'a> {
     gpu: &'a Gpu,
     bodies: Arc<Bodies>,
     pending: VecDeque<Pending>,
+    sender: Sender<Result<Done, EngineError>>,
+    receiver: Receiver<Result<Done, EngineError>>,
+    working: usize,
+    early: BTreeMap<u32, Done>,
+    awaited: VecDeque<Awaited>,
+    /// Of the segment that is not complete.
     measured: Vec<Measured>,
-    sender: Sender<Result<Encoded, String>>,
-    receiver: Receiver<Result<Encoded, String>>,
-    encoding: usize,
-    early: BTreeMap<u32, Encoded>,
-    next: u32,
+    delivered: Delivered,
+    keeper: Keeper,
     /// Receives the PNG of each picture, in order, before the sink does.
     keep: &'a mut dyn FnMut(&Frame) -> Result<(), EngineError>,
 }
 
 impl<'a> Delivery<'a> {
-    pub fn new(gpu: &'a Gpu, bodies: Arc<Bodies>, keep: &'a mut dyn FnMut(&Frame) -> Result<(), EngineError>) -> Delivery<'a> {
+    pub fn new(gpu: &'a Gpu, bodies: Arc<Bodies>, keeper: Keeper, keep: &'a mut dyn FnMut(&Frame) -> Result<(), EngineError>) -> Delivery<'a> {
         let (sender, receiver) = channel();
-        let (pending, measured, early) = (VecDeque::new(), Vec::new(), BTreeMap::new());
-        Delivery { gpu, bodies, pending, measured, sender, receiver, encoding: 0, early, next: 0, keep }
+        let (pending, awaited, early) = (VecDeque::new(), VecDeque::new(), BTreeMap::new());
+        let (measured, delivered) = (Vec::new(), Delivered::default());
+        Delivery { gpu, bodies, pending, sender, receiver, working: 0, early, awaited, measured, delivered, keeper, keep }
     }
 
     /// Takes over a frame whose read-backs were started.
@@ -65,6 +91,7 @@ impl<'a> Delivery<'a> {
         picture: Option<Picture>,
         sink: &mut dyn Sink,
     ) -> Result<(), EngineError> {
+        self.awaited.push_back(Awaited::Frame(index));
         self.pending.push_back(Pending { index, time_s, motion, picture });
         while self.pending.len() > IN_FLIGHT {
             self.take_one()?;
@@ -72,78 +99,111 @@ impl<'a> Delivery<'a> {
         self.deliver(sink)
     }
 
-    /// Waits for the read-backs under way and returns the motion that came back since the last call.
-    pub fn settle(&mut self, sink: &mut dyn Sink) -> Result<Vec<Measured>, EngineError> {
+    /// Takes over a segment whose frames were pushed: it is kept when they have come.
+    pub fn end(&mut self, simulated: Simulated) {
+        self.awaited.push_back(Awaited::End(Box::new(simulated)));
+    }
+
+    /// Waits for everything, delivers it, and has it on disk.
+    pub fn finish(mut self, sink: &mut dyn Sink) -> Result<Delivered, EngineError> {
         while !self.pending.is_empty() {
             self.take_one()?;
         }
         self.deliver(sink)?;
-        Ok(std::mem::take(&mut self.measured))
-    }
-
-    /// Waits for everything and delivers it.
-    pub fn finish(mut self, sink: &mut dyn Sink) -> Result<Vec<Measured>, EngineError> {
-        let measured = self.settle(sink)?;
-        while self.encoding > 0 {
+        while self.working > 0 {
             self.receive_one()?;
             self.deliver(sink)?;
         }
-        Ok(measured)
+        self.keeper.finish()?;
+        Ok(self.delivered)
     }
 
-    /// Waits for the oldest frame of the device and hands its picture to an encoder.
+    /// Waits for the oldest frame of the device and hands it to another thread.
     fn take_one(&mut self) -> Result<(), EngineError> {
-        let Some(pending) = self.pending.pop_front() else { return Ok(()) };
-        if let Some(readback) = pending.motion {
-            let mut parts = readback.wait(self.gpu)?;
-            let velocity = parts.pop().unwrap_or_default();
-            let motion = parts.pop().unwrap_or_default();
-            let frame = MotionFrame::unpack(&motion, &velocity);
-            let (rows, nonfinite) = (measure(&frame, &self.bodies), frame.nonfinite());
-            self.measured.push(Measured { motion, rows, nonfinite });
-        }
-        let Some(picture) = pending.picture else { return Ok(()) };
-        let image = picture.read(self.gpu)?;
-        // Encoders that fall behind are waited for, so that no animation piles up in memory.
-        while self.encoding >= 2 * rayon::current_num_threads() + 2 {
+        let Some(Pending { index, time_s, motion, picture }) = self.pending.pop_front() else { return Ok(()) };
+        let motion = motion.map(|readback| readback.arrive(self.gpu)).transpose()?;
+        let picture = picture.map(|picture| picture.develop(self.gpu)).transpose()?;
+        // Those that fall behind are waited for, so that no animation piles up in memory.
+        while self.working >= 2 * rayon::current_num_threads() + 2 {
             self.receive_one()?;
         }
-        self.encoding += 1;
-        let (sender, index, time_s) = (self.sender.clone(), pending.index, pending.time_s);
+        self.working += 1;
+        let (sender, bodies) = (self.sender.clone(), self.bodies.clone());
         rayon::spawn(move || {
-            let encoded = export::encode_png(image.size, &image.rgba8).map_err(|e| e.to_string()).map(|png| Encoded {
-                frame: Frame { index, time_s, size: image.size, rgba8: image.rgba8.into(), png: png.into(), depth: None, id: None },
-            });
+            let measured = motion.map(|arrived| measured(&arrived, &bodies)).transpose();
+            let frame = picture.map(|picture| encoded(index, time_s, &picture)).transpose();
+            let done = measured.and_then(|measured| Ok(Done { index, measured, frame: frame? }));
             // The receiver is gone only when the run has already failed.
-            let _ = sender.send(encoded);
+            let _ = sender.send(done);
         });
         Ok(())
     }
 
     fn receive_one(&mut self) -> Result<(), EngineError> {
-        if let Ok(encoded) = self.receiver.recv() {
-            self.accept(encoded)?;
+        let clock = Instant::now();
+        if let Ok(done) = self.receiver.recv() {
+            self.accept(done)?;
         }
+        self.delivered.held_up += clock.elapsed();
         Ok(())
     }
 
-    fn accept(&mut self, encoded: Result<Encoded, String>) -> Result<(), EngineError> {
-        self.encoding -= 1;
-        let encoded = encoded.map_err(EngineError::Unstable)?;
-        self.early.insert(encoded.frame.index, encoded);
+    fn accept(&mut self, done: Result<Done, EngineError>) -> Result<(), EngineError> {
+        self.working -= 1;
+        let done = done?;
+        self.early.insert(done.index, done);
         Ok(())
     }
 
     /// Hands on what is ready, in order.
     fn deliver(&mut self, sink: &mut dyn Sink) -> Result<(), EngineError> {
-        while let Ok(encoded) = self.receiver.try_recv() {
-            self.accept(encoded)?;
+        while let Ok(done) = self.receiver.try_recv() {
+            self.accept(done)?;
         }
-        while let Some(encoded) = self.early.remove(&self.next) {
-            (self.keep)(&encoded.frame)?;
-            sink.frame(encoded.frame);
-            self.next += 1;
+        let clock = Instant::now();
+        while let Some(next) = self.awaited.pop_front() {
+            match next {
+                Awaited::End(mut simulated) => {
+                    simulated.frames = std::mem::take(&mut self.measured);
+                    self.keeper.keep(*simulated)?;
+                }
+                Awaited::Frame(index) => match self.early.remove(&index) {
+                    Some(done) => self.hand_on(done, sink)?,
+                    None => {
+                        self.awaited.push_front(Awaited::Frame(index));
+                        break;
+                    }
+                },
+            }
+        }
+        self.delivered.held_up += clock.elapsed();
+        Ok(())
+    }
+
+    fn hand_on(&mut self, done: Done, sink: &mut dyn Sink) -> Result<(), EngineError> {
+        if let Some(measured) = done.measured {
+            self.delivered.rows.push(measured.rows.clone());
+            self.delivered.nonfinite = self.delivered.nonfinite.max(measured.nonfinite);
+            self.measured.push(measured);
+        }
+        if let Some(frame) = done.frame {
+            (self.keep)(&frame)?;
+            sink.frame(frame);
         }
         Ok(())
     }
+}
+
+/// Motion and velocities, measured.
+fn measured(arrived: &Arrived, bodies: &Bodies) -> Result<Measured, EngineError> {
+    let motion = arrived.part(0, <[u8]>::to_vec)?;
+    let frame = arrived.part(1, |velocity| MotionFrame::unpack(&motion, velocity))?;
+    Ok(Measured { rows: measure(&frame, bodies), nonfinite: frame.nonfinite(), motion })
+}
+
+fn encoded(index: u32, time_s: f64, picture: &Developed) -> Result<Frame, EngineError> {
+    let size = picture.size();
+    let rgba8: Arc<[u8]> = picture.rgba8(|pixels| pixels.into())?;
+    let png = export::encode_png(size, &rgba8).map_err(|e| EngineError::Unstable(e.to_string()))?;
+    Ok(Frame { index, time_s, size, rgba8, png: png.into(), depth: None, id: None })
 }

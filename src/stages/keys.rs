@@ -7,6 +7,7 @@ use crate::world::Resolved;
 use crate::{proxy, render, skin, solver};
 use serde::Serialize;
 use serde_json::json;
+use std::sync::LazyLock;
 
 /// Changed whenever the meaning of any key does.
 const KEY_FORMAT: u32 = 2;
@@ -56,10 +57,8 @@ fn device(gpu: &Gpu) -> serde_json::Value {
 pub(super) fn prestress(spec: &Spec, keys: &StillKeys, resolved: &Resolved, gpu: &Gpu) -> String {
     let bodies: Vec<_> = spec.objects.iter().map(|o| (&o.material, &o.parts, o.rest)).collect();
     let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s <= 0.0).map(|p| (&p.object, &p.region)).collect();
-    hash(
-        "prestress",
-        &json!([solver::VERSION, text_hash(&solver::shader_text()), device(gpu), keys.proxy, resolved.cell_m, resolved.ground_m, bodies, pins]),
-    ) + &hash("support", &json!([spec.world, spec.colliders]))
+    hash("prestress", &json!([solver::VERSION, *SOLVER_TEXT, device(gpu), keys.proxy, resolved.cell_m, resolved.ground_m, bodies, pins]))
+        + &hash("support", &json!([spec.world, spec.colliders]))
 }
 
 /// What motion until `to_s` depends on, and nothing that the spec says of later times.
@@ -103,14 +102,13 @@ fn pin_until(pin: &Pin, to_s: f64) -> serde_json::Value {
 
 /// What the pictures depend on: the whole motion, the skin, the camera, the size, the renderer.
 pub(super) fn picture(spec: &Spec, motion: &str, keys: &StillKeys, resolved: &Resolved, gpu: &Gpu) -> String {
-    let shaders = text_hash(&(skin::shader_text() + &render::shader_text() + &render::shadow::shader_text()));
     hash(
         "picture",
         &json!([
             PICTURE_VERSION,
             skin::VERSION,
             render::VERSION,
-            shaders,
+            *PICTURE_TEXT,
             device(gpu),
             motion,
             keys.bind,
@@ -121,6 +119,10 @@ pub(super) fn picture(spec: &Spec, motion: &str, keys: &StillKeys, resolved: &Re
         ]),
     )
 }
+
+/// Hashes of the shaders that motion and pictures pass through.
+static SOLVER_TEXT: LazyLock<String> = LazyLock::new(|| text_hash(&solver::shader_text()));
+static PICTURE_TEXT: LazyLock<String> = LazyLock::new(|| text_hash(&(skin::shader_text() + &render::shader_text() + &render::shadow::shader_text())));
 
 fn text_hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()

@@ -20,7 +20,7 @@ pub struct Metrics {
     pub solver: SolverMetrics,
     /// Values that were `"auto"`, by path.
     pub resolved: serde_json::Map<String, serde_json::Value>,
-    /// Wall seconds of each stage.
+    /// Wall seconds of each stage, and of parts of it under `stage.part`; parts run side by side.
     pub seconds: BTreeMap<String, f64>,
     /// Simulated objects, by name.
     pub objects: BTreeMap<String, ObjectMetrics>,

@@ -6,10 +6,11 @@
 
 use super::{EngineError, keys, pack};
 use crate::spec::Spec;
-use crate::store::{Entry, Store};
+use crate::store::{Entry, Store, StoreError};
 use crate::world::measure::Row;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::io::Write;
 
 /// Length of a segment.
 const SEGMENT_S: f64 = 0.25;
@@ -120,11 +121,21 @@ pub(super) fn get(store: &Store, segment: &Segment) -> Result<Option<Kept>, Engi
     Ok(meta.map(|meta| Kept { meta, entry }))
 }
 
-/// Keeps a finished segment.
-pub(super) fn keep(store: &Store, segment: &Segment, meta: &SegmentMeta, motion: &[u8], checkpoint: &[u8]) -> Result<(), EngineError> {
+/// Keeps a finished segment, its motion frame by frame.
+pub(super) fn keep<'a>(
+    store: &Store,
+    segment: &Segment,
+    meta: &SegmentMeta,
+    motion: impl Iterator<Item = &'a [u8]>,
+    checkpoint: &[u8],
+) -> Result<(), EngineError> {
     let entry = store.begin("motion", &segment.key)?;
     if meta.frame_bytes > 0 {
-        entry.put("motion", motion)?;
+        let mut blob = entry.write("motion")?;
+        for frame in motion {
+            blob.write_all(frame).map_err(|source| StoreError::Io { doing: "written", path: store.dir().to_owned(), source })?;
+        }
+        blob.finish()?;
     }
     entry.put("checkpoint", checkpoint)?;
     entry.finish(serde_json::to_value(meta).unwrap_or_default())?;

@@ -2,7 +2,7 @@
 
 use super::engine::Ready;
 use super::segments::SolverTotals;
-use super::{ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, StageName, SubstepRange, lookup};
+use super::{ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, SubstepRange, lookup};
 use crate::gpu::Gpu;
 use crate::render::View;
 use crate::solver::Advance;
@@ -57,7 +57,7 @@ pub(super) fn metrics(
     matter: &Matter,
     rows: &[Vec<Row>],
     totals: &SolverTotals,
-    seconds: &BTreeMap<StageName, f64>,
+    seconds: BTreeMap<String, f64>,
     gpu: &Gpu,
 ) -> Metrics {
     let fps = spec.time.fps;
@@ -82,7 +82,7 @@ pub(super) fn metrics(
             simulate_s: totals.seconds,
         },
         resolved: resolved(spec, ready, matter),
-        seconds: seconds.iter().map(|(stage, s)| (stage.as_str().to_owned(), *s)).collect(),
+        seconds,
         objects: spec.objects.iter().enumerate().map(|(i, o)| (o.name.clone(), object(spec, ready, matter, rows, i))).collect(),
         expect: Vec::new(),
     };

@@ -4,7 +4,7 @@ use super::bodies::Matter;
 use super::settings::settings;
 use super::stuff::Stuff;
 use crate::gpu::{Gpu, Recording};
-use crate::solver::{Advance, Moduli, Placement, Solver, SolverError};
+use crate::solver::{Advance, Checkpoint, Moduli, Placement, Solver, SolverError};
 use crate::spec::{Event, Rest, Spec};
 use crate::{Stop, solver};
 use glam::{EulerRot, Quat, Vec3};
@@ -177,6 +177,11 @@ impl World {
     /// The whole state, from which the same bits go on.
     pub fn checkpoint(&self) -> Result<Vec<u8>, SolverError> {
         self.solver.checkpoint()
+    }
+
+    /// As [`World::checkpoint`], without waiting for it.
+    pub fn start_checkpoint(&self) -> Result<Checkpoint, SolverError> {
+        self.solver.start_checkpoint()
     }
 
     /// Goes back to a state at a frame.

@@ -35,6 +35,8 @@ pub fn jobs(scene: &str, flags: &Flags) -> Vec<Job> {
         job("frame", frame),
         job("load", load),
         job("edit", edit),
+        Job { size: "PNG".to_owned(), ..job("export", png) },
+        Job { size: "preview.webp, a frame".to_owned(), ..job("export", preview) },
         job("exec", |flags, scene| spawned(flags, scene, true, |s| s.end_s)),
         Job { size: "to first substep".to_owned(), ..job("cold", |flags, scene| spawned(flags, scene, false, |s| s.substep_s)) },
         Job { size: "to first picture".to_owned(), ..job("cold", |flags, scene| spawned(flags, scene, false, |s| s.picture_s)) },
@@ -137,6 +139,57 @@ fn load(flags: &Flags, scene: &str) -> Result<Timing, Failure> {
         seconds.push(start.elapsed().as_secs_f64());
     }
     Ok(Timing::of(seconds))
+}
+
+/// A picture of the demo as a PNG, on one core.
+fn png(flags: &Flags, _: &str) -> Result<Timing, Failure> {
+    let picture = pictures(flags, 1)?.swap_remove(0);
+    let encode = |_| {
+        let start = Instant::now();
+        phystalk::export::encode_png(picture.size, &picture.rgba8).map(|_| start.elapsed().as_secs_f64())
+    };
+    Ok(Timing::of((0..REPEATS * REPEATS).map(encode).collect::<Result<_, _>>()?))
+}
+
+/// A frame of a preview: shrunk, compared with the one before, compressed; on all cores.
+fn preview(flags: &Flags, _: &str) -> Result<Timing, Failure> {
+    const FRAMES: usize = 24;
+    let scratch = Scratch::new("preview")?;
+    let pictures = pictures(flags, 2)?;
+    let film = |_| {
+        let mut preview = phystalk::export::Preview::create(&scratch.0.join("preview.webp"), 25.0)?;
+        let start = Instant::now();
+        for index in 0..FRAMES {
+            preview.add(&Frame { index: index as u32, ..pictures[index % 2].clone() })?;
+        }
+        preview.finish()?;
+        Ok(start.elapsed().as_secs_f64() / FRAMES as f64)
+    };
+    Ok(Timing::of((0..REPEATS).map(film).collect::<Result<_, phystalk::export::ExportError>>()?))
+}
+
+/// Pictures of the demo from places side by side.
+fn pictures(flags: &Flags, count: usize) -> Result<Vec<Frame>, Failure> {
+    let scratch = Scratch::new("pictures")?;
+    let gaussians = scene::demo::gaussians(1);
+    let (low, high) = gaussians.bounds();
+    let (centre, reach) = ((low + high) * 0.5, (high - low).length());
+    let view = |i: usize| {
+        let eye = centre - reach * (glam::Vec3::X + 0.01 * i as f32 * glam::Vec3::Y);
+        View::look_at(eye, centre, 45.0, flags.size.unwrap_or(SIZE))
+    };
+    let views: Vec<View> = (0..count).map(view).collect();
+    let images = scratch.engine(flags)?.still(&gaussians, &views, &RenderOptions::default())?;
+    let frame = |image: phystalk::render::Image| Frame {
+        index: 0,
+        time_s: 0.0,
+        size: image.size,
+        rgba8: image.rgba8.into(),
+        png: Vec::new().into(),
+        depth: None,
+        id: None,
+    };
+    Ok(images.into_iter().map(frame).collect())
 }
 
 /// An edit of the launch speed to the first new frame, in a session that has run before.
