@@ -165,7 +165,7 @@ impl<'a> Delivery<'a> {
             match next {
                 Awaited::End(mut simulated) => {
                     simulated.frames = std::mem::take(&mut self.measured);
-                    self.keeper.keep(*simulated)?;
+                    self.keeper.keep(simulated)?;
                 }
                 Awaited::Frame(index) => match self.early.remove(&index) {
                     Some(done) => self.hand_on(done, sink)?,

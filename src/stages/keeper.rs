@@ -26,7 +26,7 @@ pub(super) struct Simulated {
 /// Writes segments in the order they come.
 pub(super) struct Keeper {
     // Until it is finished.
-    sender: Option<SyncSender<Simulated>>,
+    sender: Option<SyncSender<Box<Simulated>>>,
     thread: Option<JoinHandle<Result<(), EngineError>>>,
 }
 
@@ -38,12 +38,10 @@ impl Keeper {
     }
 
     /// Hands a segment over.
-    pub fn keep(&mut self, simulated: Simulated) -> Result<(), EngineError> {
-        match self.sender.as_ref().map(|sender| sender.send(simulated)) {
-            Some(Ok(())) => Ok(()),
-            // The thread ended before its time: why, it says.
-            _ => self.join(),
-        }
+    pub fn keep(&mut self, simulated: Box<Simulated>) -> Result<(), EngineError> {
+        let sent = self.sender.as_ref().is_some_and(|sender| sender.send(simulated).is_ok());
+        // A thread that ended before its time says why.
+        if sent { Ok(()) } else { self.join() }
     }
 
     /// Waits until all is on disk.
@@ -65,8 +63,9 @@ impl Drop for Keeper {
     }
 }
 
-fn write(store: &Store, incoming: &Receiver<Simulated>) -> Result<(), EngineError> {
-    for Simulated { segment, mut totals, frame_bytes, checkpoint, frames } in incoming {
+fn write(store: &Store, incoming: &Receiver<Box<Simulated>>) -> Result<(), EngineError> {
+    for simulated in incoming {
+        let Simulated { segment, mut totals, frame_bytes, checkpoint, frames } = *simulated;
         totals.nonfinite = frames.iter().map(|f| f.nonfinite).max().unwrap_or(0);
         let meta = SegmentMeta { rows: frames.iter().map(|f| f.rows.clone()).collect(), solver: totals, frame_bytes };
         segments::keep(store, &segment, &meta, frames.iter().map(|f| f.motion.as_slice()), &checkpoint.bytes()?)?;
