@@ -120,3 +120,78 @@ fn a_change_of_material_in_time_changes_nothing_before_it() {
     let (sank, _) = fate(&column(&whole));
     assert!(sank > 0.005, "it sank {sank} m");
 }
+
+/// Height over the ground at which a drop of the column starts.
+const DROP_M: f64 = 0.1;
+
+#[test]
+fn what_waits_for_an_impact_happens_when_the_run_finds_it_and_goes_on_from_anywhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut spec = spec(folder.path());
+    spec.time.duration_s = Auto::Value(0.5);
+    spec.objects[0].material = preset("rubber");
+    spec.objects[0].offset_m = [0.0, 0.0, DROP_M];
+    spec.events.push(Event { material: Some(preset("sand")), ..Event::on_impact("crumble", "column") });
+    spec.events.push(Event { push_m_s: Some([1.0, 0.0, 0.0]), ..Event::on_impact("push", "column") });
+    let mut first = spec.clone();
+    first.time.duration_s = Auto::Value(0.25);
+    let (begun, resumed) = (run(&first, folder.path()), run(&spec, folder.path()));
+    assert_eq!(resumed.plan.stages[3].from_s, Some(0.25));
+    let landed_s = (2.0 * DROP_M / 9.81).sqrt();
+    for report in [&begun, &resumed] {
+        let times: Vec<f64> = report.metrics.events.iter().map(|e| e.at_s.unwrap()).collect();
+        assert!(times.iter().all(|t| (t - landed_s).abs() < 0.5 / 20.0 / 4.0), "{times:?}, expected {landed_s}");
+    }
+    let column = |report: &Report| report.metrics.objects["column"].clone();
+    let (sank, _) = fate(&column(&resumed));
+    assert!(sank - DROP_M > 0.02 && column(&resumed).com_m[10][0] > 0.03, "it crumbles and goes off: {sank}");
+    // Nothing before it knew.
+    let mut plain = spec.clone();
+    plain.events.clear();
+    let other = tempfile::tempdir().unwrap();
+    std::fs::copy(folder.path().join("column.ply"), other.path().join("column.ply")).unwrap();
+    assert_eq!(column(&run(&plain, other.path())).com_m[..=2], column(&resumed).com_m[..=2]);
+    assert_eq!(column(&run(&spec, other.path())).com_m, column(&resumed).com_m, "in one go the same bits");
+    // What stands meets nothing.
+    spec.objects[0].offset_m = [0.0; 3];
+    let still = run(&spec, folder.path());
+    assert!(still.metrics.events.iter().all(|e| e.at_s.is_none()), "{:?}", still.metrics.events);
+}
+
+#[test]
+fn what_freezes_keeps_the_shape_that_it_has_until_it_is_released() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut spec = spec(folder.path());
+    spec.objects[0].material = preset("water");
+    spec.time.duration_s = Auto::Value(0.6);
+    spec.events.push(Event { freeze: true, ..Event::at("freeze", "column", 0.1) });
+    spec.events.push(Event { release: true, ..Event::at("melt", "column", 0.4) });
+    let column = run(&spec, folder.path()).metrics.objects["column"].clone();
+    let (flowed, kept, gone) =
+        (column.spread_m[2] / column.spread_m[0], column.spread_m[8] / column.spread_m[2], column.spread_m[12] / column.spread_m[8]);
+    assert!(flowed > 1.02 && (kept - 1.0).abs() < 0.08 && gone > 1.15, "{flowed} {kept} {gone}");
+}
+
+#[test]
+fn water_of_smoothed_particles_comes_to_rest_on_the_ground() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut spec = spec(folder.path());
+    let Material::Liquid(mut water) = preset("water") else { panic!("a liquid") };
+    water.solver = phystalk::spec::LiquidSolver::Sph;
+    water.viscosity_pa_s = 1.0;
+    spec.objects[0].material = Material::Liquid(water);
+    spec.time.duration_s = Auto::Value(0.6);
+    let report = run(&spec, folder.path());
+    let column = &report.metrics.objects["column"];
+    let last = column.com_m.len() - 1;
+    let fastest = column.mean_speed_m_s.iter().copied().fold(0.0, f64::max);
+    println!(
+        "{} to {} m high, {} times as wide, {fastest} to {} m/s",
+        column.high_m[0],
+        column.high_m[last],
+        fate(column).1,
+        column.mean_speed_m_s[last]
+    );
+    assert!(column.gap_m.iter().all(|gap| *gap > -1e-3), "{:?}", column.gap_m);
+    assert!(fate(column).1 > 1.5 && column.mean_speed_m_s[last] < 0.1 * fastest);
+}

@@ -207,6 +207,15 @@ impl Solver {
         spans(from_s, to_s, self.time_s)
     }
 
+    /// Ends pins, by their place in the settings, that last longer.
+    pub fn end_pins(&mut self, pins: &[usize], at_s: f64) {
+        for &pin in pins {
+            if let Some(pin) = self.settings.pins.get_mut(pin).filter(|p| p.from_s < at_s) {
+                pin.to_s = pin.to_s.min(at_s);
+            }
+        }
+    }
+
     /// The fastest that a pin moves in this segment.
     fn pin_speed_m_s(&self) -> f32 {
         let pins = self.settings.pins.iter().filter(|p| self.in_force(p.from_s, p.to_s));

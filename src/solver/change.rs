@@ -5,6 +5,7 @@ use super::laws::{Rows, from_rows, rows};
 use super::state::ParticleState;
 use super::substance::Substance;
 use super::types::SolverError;
+use glam::Mat3;
 
 /// Moduli after a change of material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +47,15 @@ impl Solver {
     /// other moduli, at the present time. Mass, places, velocities and what is seen stay; what F the new
     /// law goes on with is for [`Substance`] to say. No substance: that which it has.
     pub fn change_material(&mut self, object: u32, only: Option<&[u32]>, substance: Option<&Substance>, moduli: Moduli) -> Result<(), SolverError> {
+        self.change(object, only, substance, moduli, Shape::Kept)
+    }
+
+    /// The same, and the shape that it has now is the one that it returns to: no stress is left in it.
+    pub fn freeze(&mut self, object: u32, only: Option<&[u32]>, substance: Option<&Substance>, moduli: Moduli) -> Result<(), SolverError> {
+        self.change(object, only, substance, moduli, Shape::Present)
+    }
+
+    fn change(&mut self, object: u32, only: Option<&[u32]>, substance: Option<&Substance>, moduli: Moduli, shape: Shape) -> Result<(), SolverError> {
         let row = substance.map(|s| self.row_for(s)).transpose()?;
         let mut picked = vec![only.is_none(); self.params.count as usize];
         for &index in only.into_iter().flatten() {
@@ -71,10 +81,11 @@ impl Solver {
                     expected: "finite moduli over 0, nu over -1 and under 0.5".to_owned(),
                 });
             }
-            if let Some(row) = row {
+            if row.is_some() || shape == Shape::Present {
+                let row = row.unwrap_or(state.substance() as u16);
                 let before = &self.laws.substances[state.substance()];
                 let after = &self.laws.substances[usize::from(row)];
-                turn(state, before, after, &mut unstressed[i], shown.get_mut(i));
+                turn(state, before, after, shape, &mut unstressed[i], shown.get_mut(i));
                 bodies_change |= (state.is_rigid() || after.rigid().is_some()) && state.substance() != usize::from(row);
                 state.set_substance(row, after.rigid().is_some());
                 if after.is_sph() || after.rigid().is_some() {
@@ -105,14 +116,26 @@ impl Solver {
     }
 }
 
+/// Which shape matter that changes returns to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shape {
+    /// What it did, as far as its new law remembers.
+    Kept,
+    /// The one that it has.
+    Present,
+}
+
 /// Turns a particle's matter, so that its shape as others see it stays.
-fn turn(state: &mut ParticleState, before: &Substance, after: &Substance, unstressed: &mut Rows, shown: Option<&mut Rows>) {
+fn turn(state: &mut ParticleState, before: &Substance, after: &Substance, shape: Shape, unstressed: &mut Rows, shown: Option<&mut Rows>) {
     let f = state.f();
     let seen = match (&shown, before.shown_stretch()) {
         (Some(shown), Some(_)) => from_rows(shown),
         _ => f * from_rows(unstressed),
     };
-    let (next, history) = after.taken_over(before, f, state.history);
+    let (next, history) = match shape {
+        Shape::Kept => after.taken_over(before, f, state.history),
+        Shape::Present => (Mat3::IDENTITY, after.first_history()),
+    };
     state.history = history;
     state.set_f(next);
     match (after.shown_stretch(), shown) {
@@ -126,7 +149,6 @@ fn turn(state: &mut ParticleState, before: &Substance, after: &Substance, unstre
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Mat3;
 
     #[test]
     fn what_is_seen_stays_whatever_it_turns_into() {
@@ -140,7 +162,7 @@ mod tests {
                 state.set_f(f);
                 let (mut unstressed, mut shown) = (rows(first), rows(Mat3::from_rotation_x(0.1) * 0.9));
                 let seen = if before.shown_stretch().is_some() { from_rows(&shown) } else { f * first };
-                turn(&mut state, before, after, &mut unstressed, Some(&mut shown));
+                turn(&mut state, before, after, Shape::Kept, &mut unstressed, Some(&mut shown));
                 let now = if after.shown_stretch().is_some() { from_rows(&shown) } else { state.f() * from_rows(&unstressed) };
                 assert!(now.abs_diff_eq(seen, 1e-5), "{before:?} to {after:?}: {seen} became {now}");
                 // Nor does matter appear: volume with what sand and snow remember of it.
@@ -149,6 +171,9 @@ mod tests {
                     _ => state.f().determinant(),
                 };
                 assert!((volume / f.determinant() - 1.0).abs() < 1e-4, "{before:?} to {after:?}");
+                turn(&mut state, after, before, Shape::Present, &mut unstressed, Some(&mut shown));
+                let now = if before.shown_stretch().is_some() { from_rows(&shown) } else { state.f() * from_rows(&unstressed) };
+                assert!(now.abs_diff_eq(seen, 1e-5) && state.f() == Mat3::IDENTITY, "{before:?} frozen: {seen} became {now}");
             }
         }
     }

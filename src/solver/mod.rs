@@ -19,6 +19,7 @@ mod core;
 mod encounter;
 mod fields;
 mod grid;
+mod impact;
 mod kept;
 mod laws;
 mod liquid;
@@ -44,6 +45,7 @@ pub use change::Moduli;
 pub use checkpoint::Checkpoint;
 pub use core::Solver;
 pub use fields::velocity_change;
+pub use impact::Sight;
 pub use substance::{Activation, Substance, liquid_bulk_pa};
 pub use types::{Advance, Collider, Field, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError};
 

@@ -202,7 +202,22 @@ impl Substance {
 
     /// Whether it can stand as captured, under a prestress.
     pub(super) fn can_stand(&self) -> bool {
-        !matches!(self, Substance::Sand { .. } | Substance::Snow { .. } | Substance::Liquid { .. })
+        !(self.flows_freely() || matches!(self, Substance::Sand { .. } | Substance::Snow { .. }))
+    }
+
+    /// Whether it flows, by whichever method.
+    pub fn flows_freely(&self) -> bool {
+        self.is_liquid() || self.is_sph()
+    }
+
+    /// Whether nothing deforms it.
+    pub fn is_rigid(&self) -> bool {
+        self.rigid().is_some()
+    }
+
+    /// Whether it keeps a shape of its own.
+    pub fn keeps_shape(&self) -> bool {
+        matches!(self, Substance::Elastic(_) | Substance::Muscle { .. } | Substance::Plastic { .. } | Substance::Rigid { .. })
     }
 
     /// What its law remembers of a past in which nothing happened.
@@ -220,6 +235,8 @@ impl Substance {
         if std::mem::discriminant(self) == std::mem::discriminant(before) {
             return (f, history);
         }
+        // Smoothed particles left each other since: what F was says nothing.
+        let f = if before.is_sph() { Mat3::IDENTITY } else { f };
         match self {
             // A body's F is its rotation since it was made.
             Substance::Rigid { .. } => (Mat3::IDENTITY, 0.0),

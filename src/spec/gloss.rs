@@ -155,7 +155,7 @@ fn happening(event: &Value, forward: Axis) -> Option<String> {
     } else if let Some(share) = event.get("weaken").and_then(Value::as_f64) {
         format!("{} as strong", times(share))
     } else if event.get("freeze").is_some() {
-        "held where it is".to_owned()
+        "freezes".to_owned()
     } else {
         "let go".to_owned()
     };

@@ -4,33 +4,11 @@
 use serde_json::Value;
 
 use super::error::{SpecError, SpecErrorKind};
-use super::{Event, LiquidSolver, Material};
 
 /// Everything to come, with the words that are refused for it.
 pub(super) fn all() -> impl Iterator<Item = (&'static str, String)> {
-    let solvers = SPH.map(|what| (what, "material.solver = \"sph\"".to_owned()));
-    let effects = EFFECTS.iter().map(|(key, what)| (*what, format!("event.{key}")));
-    solvers.into_iter().chain(effects).chain(
-        KEYS.iter().chain(WORDS).map(|(place, name, what)| (*what, if place.is_empty() { (*name).to_owned() } else { format!("{place}.{name}") })),
-    )
-}
-
-/// Liquids by smoothed particles, while they are to come.
-const SPH: Option<&str> = Some("liquids by smoothed particles");
-
-/// What a material will once be that is not built yet, with the key that asks for it.
-pub fn material(material: &Material) -> Option<(&'static str, &'static str)> {
-    let sph = matches!(material, Material::Liquid(liquid) if liquid.solver == LiquidSolver::Sph);
-    SPH.filter(|_| sph).map(|what| ("solver", what))
-}
-
-/// Effects of events that are to come.
-const EFFECTS: &[(&str, &str)] = &[("freeze", "freezing"), ("when", "events that wait for a condition")];
-
-/// What an event asks for that is to come, with its key.
-pub(super) fn event(event: &Event) -> Option<(&'static str, &'static str)> {
-    let keys = event.effects().into_iter().chain(event.when.map(|_| "when")).collect::<Vec<_>>();
-    EFFECTS.iter().copied().find(|(key, _)| keys.contains(key))
+    let said = |place: &str, name: &str| if place.is_empty() { name.to_owned() } else { format!("{place}.{name}") };
+    KEYS.iter().chain(WORDS).map(move |(place, name, what)| (*what, said(place, name)))
 }
 
 /// Keys to come: where, which, what they mean.

@@ -33,7 +33,6 @@ pub use diff::{Change, unit};
 pub use edit::Edit;
 pub use error::{SpecError, SpecErrorKind, nearest};
 pub use fields::FieldFacts;
-pub use later::material as material_to_come;
 pub use path::{LISTS, is_name, name_from_file};
 pub use reference::markdown as reference_page;
 pub use types::*;

@@ -74,10 +74,11 @@ To set `material.kind` keeps what the new kind shares with the old one, an autom
 Parts are bonded: one body of several materials, without a gap or a contact between them. They are picked in the captured pose, by particles. Where two parts
 overlap the later one has what both claim; a part that holds no particle has no effect; both are said as warnings.
 
-An event does one thing, at `at_s` or `when = \"impact\"`. An impact is looked for at the start of every frame, so that nothing has to be read back inside one: an object
-touches when a particle of it is nearer to the ground, to a collider or to another object's particle than half a cell and half a frame of their motion
-together, and the first frame on which it touches after one on which it touched nothing is the impact. A thing that stands at the start has to leave the ground first.
-A change of material keeps mass, place and speed: the new density is not read. What an event freezes stays until an event releases it.
+An event does one thing, at `at_s` or `when = \"impact\"`: the first time that its object meets something, the ground, a collider or another object, that it
+did not touch before. What it stands on counts once it has been half a cell clear of it. The run finds that by itself, to a sixteenth of a frame; `events` in the
+metrics says when. A change of material keeps mass, place and speed: the new density is not read. What an event freezes stays solid until an event releases it.
+
+A liquid with `solver = \"sph\"` is made of smoothed particles beside the grid: it splashes more sharply, costs more steps, and meets everything else; pins do not hold it.
 ";
 
 const SPELLINGS: &str = "

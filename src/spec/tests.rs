@@ -171,8 +171,6 @@ fn faults_say_path_value_bounds_and_nearest_name() {
 fn what_comes_later_is_refused_by_name() {
     let faults = [
         refused("[[pin]]", "[[look]]\nobject = \"vase\"\n[[pin]]"),
-        refused("at_s = 0.5", "when = \"impact\""),
-        refused("push_m_s = [2, 0, 0]", "freeze = true"),
         refused("push_m_s = [2, 0, 0]", "shatter = true"),
         refused("shape = { box = { centre_m = [0, 0, -0.5], size_m = [1, 1, 0.2] } }", "shape = \"scene\""),
         refused("select = \"all\"", "select = { segment = \"pot\" }"),

@@ -5,9 +5,7 @@ use std::collections::BTreeSet;
 
 use super::error::{SpecError, SpecErrorKind};
 use super::expression::{Fault, Kind, Program, parse};
-use super::{
-    Activation, Auto, ColliderShape, Drive, Event, Force, Material, Motor, Region, Spec, Until, Vortex, canonical::number, expect, later, limits,
-};
+use super::{Activation, Auto, ColliderShape, Drive, Event, Force, Material, Motor, Region, Spec, Until, Vortex, canonical::number, expect, limits};
 
 /// Checks a spec whose structure and ranges are already right.
 pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
@@ -73,12 +71,9 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
     Ok(())
 }
 
-/// What no range says of a material, and whether its law is built.
+/// What no range says of a material.
 fn material(material: &Material, owner: &str) -> Result<(), SpecError> {
     let place = format!("{owner}.material");
-    if let Some((key, what)) = later::material(material) {
-        return Err(later::error(&format!("{place}.{key}"), what, "solver = \"mpm\""));
-    }
     let Material::Muscle(muscle) = material else { return Ok(()) };
     heading(&format!("{place}.fibre"), &muscle.fibre, "a direction")?;
     let Activation::Curve(points) = &muscle.activation else { return Ok(()) };
@@ -117,9 +112,6 @@ fn event(spec: &Spec, event: &Event, place: &str) -> Result<(), SpecError> {
         [_] => {}
         [first, second, ..] => return refuse(format!("{first} and {second} at once"), "one effect for each event; two events may have one time"),
     }
-    if let Some((key, what)) = later::event(event) {
-        return Err(later::error(&format!("{place}.{key}"), what, "at_s with push_m_s, velocity_m_s, material, weaken or release"));
-    }
     if let Some(changed) = &event.material {
         material(changed, place)?;
     }
@@ -128,8 +120,8 @@ fn event(spec: &Spec, event: &Event, place: &str) -> Result<(), SpecError> {
         if !object.parts.iter().any(|known| known.name == *part) {
             return Err(SpecError::unknown(format!("{place}.part"), "part", part, object.parts.iter().map(|part| part.name.as_str())));
         }
-        if event.material.is_none() && event.weaken.is_none() {
-            return refuse(format!("{} acts on the whole object", event.effects().join("")), "part with material or weaken");
+        if event.material.is_none() && event.weaken.is_none() && !event.freeze {
+            return refuse(format!("{} acts on the whole object", event.effects().join("")), "part with material, weaken or freeze");
         }
     }
     let others = || spec.events.iter().filter(|other| other.object == event.object);

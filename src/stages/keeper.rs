@@ -3,8 +3,8 @@
 use super::EngineError;
 use super::delivery::Measured;
 use super::segments::{self, Segment, SegmentMeta, SolverTotals};
-use crate::solver::Checkpoint;
 use crate::store::Store;
+use crate::world::Checkpoint;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 

@@ -10,7 +10,7 @@ use serde_json::json;
 use std::sync::LazyLock;
 
 /// Changed whenever the meaning of any key does.
-const KEY_FORMAT: u32 = 2;
+const KEY_FORMAT: u32 = 3;
 /// Version of reading, turning, pruning and selecting.
 const SCENE_VERSION: u32 = 1;
 /// Version of choosing neighbours and weights.

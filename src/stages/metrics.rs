@@ -24,6 +24,9 @@ pub struct Metrics {
     pub seconds: BTreeMap<String, f64>,
     /// Simulated objects, by name.
     pub objects: BTreeMap<String, ObjectMetrics>,
+    /// The spec's events, in its order, and when they happened.
+    #[serde(default)]
+    pub events: Vec<EventMetrics>,
     /// What was expected, and whether it held.
     pub expect: Vec<ExpectationResult>,
 }
@@ -101,6 +104,17 @@ pub struct ObjectMetrics {
     pub gap_m: Vec<f64>,
     /// Times at which it met what is below it.
     pub impacts_s: Vec<f64>,
+}
+
+/// One event of the spec.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct EventMetrics {
+    /// As the spec calls it.
+    pub name: String,
+    /// To which object.
+    pub object: String,
+    /// When it happened, for one that waits as the run found it; null where it did not.
+    pub at_s: Option<f64>,
 }
 
 /// One expectation of the spec.

@@ -186,6 +186,7 @@ impl<'a> Motion<'a> {
             if index > 0 {
                 let step = world.step_frame(stop)?;
                 step.advance.iter().for_each(|a| totals.add(&summary::totals(a, self.spec)));
+                totals.fired.extend(&step.fired);
                 stopped = step.stopped;
             }
             if stopped {

@@ -48,7 +48,7 @@ impl Engine {
         let frames = last.last + 1;
         let solids = self.solids(spec, &ready)?;
         let bound = self.bound(spec, &ready, &solids.value)?;
-        let matter = matter(spec, &ready.prepared.value, &solids.value)?;
+        let matter = matter(spec, &ready.prepared.value, &solids.value);
         let gpu = self.device()?.clone();
         let figure = Figure::new(&gpu, &ready.prepared.value, &bound.value, &matter.particles.position_m, spec.skin.weights)?;
         Ok(Some(Player {

@@ -40,7 +40,7 @@ pub(super) fn run(
     let bound = engine.bound(spec, &ready, &solids.value)?;
     seconds.insert(StageName::Bind, clock.elapsed().as_secs_f64());
 
-    let matter = matter(spec, &ready.prepared.value, &solids.value)?;
+    let matter = matter(spec, &ready.prepared.value, &solids.value);
     let mut warnings = warnings(&ready, &solids.value, &matter);
     let motion = Motion::new(engine, spec, &ready, &matter)?;
     if !motion.keep_motion {
@@ -77,6 +77,7 @@ pub(super) fn run(
     let of_forces = summary::of_forces(&done.totals);
     of_forces.iter().for_each(|w| sink.warning(w));
     warnings.extend(of_forces);
+    summary::of_impacts(spec, &done.totals, done.stopped).iter().for_each(|n| sink.note(n));
     // Whoever gave a stiffness hears what it was simulated with.
     done.totals.softened.iter().for_each(|text| sink.warning(text));
     warnings.extend(done.totals.softened.iter().cloned());

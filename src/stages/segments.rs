@@ -69,6 +69,9 @@ pub(super) struct SolverTotals {
     /// How often a force was held at the speed that forces end at.
     #[serde(default)]
     pub limited: u64,
+    /// Events that waited for an impact, by their number among those, and when it came.
+    #[serde(default)]
+    pub fired: Vec<(usize, f64)>,
     pub seconds: f64,
 }
 
@@ -84,6 +87,7 @@ impl SolverTotals {
         self.nonfinite = later.nonfinite.max(self.nonfinite);
         self.seconds += later.seconds;
         self.limited += later.limited;
+        self.fired.extend_from_slice(&later.fired);
         for (name, times) in &later.undefined {
             *self.undefined.entry(name.clone()).or_default() += times;
         }

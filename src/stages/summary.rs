@@ -2,12 +2,12 @@
 
 use super::engine::Ready;
 use super::segments::SolverTotals;
-use super::{ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, SubstepRange, lookup};
+use super::{EventMetrics, ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, SubstepRange, lookup};
 use crate::gpu::Gpu;
 use crate::render::View;
 use crate::solver::Advance;
 use crate::spec::expect::Condition;
-use crate::spec::{Spec, limits};
+use crate::spec::{Event, Spec, limits};
 use crate::world::bodies::Matter;
 use crate::world::measure::Row;
 use std::collections::BTreeMap;
@@ -50,6 +50,31 @@ pub(super) fn of_forces(totals: &SolverTotals) -> Vec<String> {
     undefined.chain(limited).collect()
 }
 
+/// When what waited for an impact came about, in words.
+pub(super) fn of_impacts(spec: &Spec, totals: &SolverTotals, stopped: bool) -> Vec<String> {
+    let told = |event: &EventMetrics, waits: bool| match event.at_s {
+        Some(at_s) if waits => Some(format!("{}: {} met something at {at_s:.3} s", event.name, event.object)),
+        None if waits && !stopped => Some(format!("{}: {} met nothing that it did not touch before, so it did not happen", event.name, event.object)),
+        _ => None,
+    };
+    let events = events(spec, totals, f64::INFINITY);
+    events.iter().zip(&spec.events).filter_map(|(event, asked)| told(event, asked.when.is_some())).collect()
+}
+
+/// When each event of the spec happened.
+fn events(spec: &Spec, totals: &SolverTotals, end_s: f64) -> Vec<EventMetrics> {
+    let mut waiting = 0..;
+    let when = |event: &Event| match event.when {
+        None => event.at_s.filter(|at_s| *at_s < end_s),
+        Some(_) => {
+            let number = waiting.next();
+            totals.fired.iter().find(|(fired, _)| Some(*fired) == number).map(|(_, at_s)| *at_s)
+        }
+    };
+    let times: Vec<Option<f64>> = spec.events.iter().map(when).collect();
+    spec.events.iter().zip(times).map(|(e, at_s)| EventMetrics { name: e.name.clone(), object: e.object.clone(), at_s }).collect()
+}
+
 /// Everything that was measured.
 pub(super) fn metrics(
     spec: &Spec,
@@ -61,12 +86,13 @@ pub(super) fn metrics(
     gpu: &Gpu,
 ) -> Metrics {
     let fps = spec.time.fps;
+    let duration_s = rows.len().saturating_sub(1) as f64 / f64::from(fps);
     let mut metrics = Metrics {
         version: String::new(),
         spec: spec.hash(),
         fps,
         frames: rows.len() as u32,
-        duration_s: rows.len().saturating_sub(1) as f64 / f64::from(fps),
+        duration_s,
         solver: SolverMetrics {
             device: gpu.name().to_owned(),
             quality: if ready.draft { "draft" } else { "full" }.to_owned(),
@@ -84,6 +110,7 @@ pub(super) fn metrics(
         resolved: resolved(spec, ready, matter),
         seconds,
         objects: spec.objects.iter().enumerate().map(|(i, o)| (o.name.clone(), object(spec, ready, matter, rows, i))).collect(),
+        events: events(spec, totals, duration_s),
         expect: Vec::new(),
     };
     metrics.expect = spec.expectations.iter().map(|e| expectation(&metrics, &e.that)).collect();

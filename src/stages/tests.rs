@@ -23,7 +23,7 @@ fn seen_moving(spec: &Spec, base: &Path, frames: &[u32]) -> Vec<f32> {
     let solids = engine.solids(spec, &ready).unwrap().value;
     let bound = engine.bound(spec, &ready, &solids).unwrap().value;
     let prepared = &ready.prepared.value;
-    let matter = matter(spec, prepared, &solids).unwrap();
+    let matter = matter(spec, prepared, &solids);
     let (gpu, stop) = (Gpu::shared_for_tests().unwrap(), Stop::default());
     let mut world = World::new(&gpu, spec, &matter, &ready.resolved).unwrap();
     world.prestress(spec, &stop, &mut |_| {}).unwrap();

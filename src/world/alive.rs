@@ -1,41 +1,16 @@
 //! A prepared scene alive: the one simulator, whether it runs as fast as it goes or against a clock.
 
 use super::bodies::Matter;
+use super::event::{Course, Effect, Piece, TimedEvent, vec3};
+use super::impact::{self, State, Waiting};
 use super::settings::settings;
-use super::stuff::Stuff;
+use crate::Stop;
 use crate::gpu::{Gpu, Recording};
-use crate::solver::{Advance, Checkpoint, Moduli, Placement, Solver, SolverError};
-use crate::spec::{Event, Rest, Spec};
-use crate::{Stop, solver};
-use glam::{EulerRot, Quat, Vec3};
+use crate::solver::{self, Advance, Moduli, Placement, Solver, SolverError};
+use crate::spec::{Rest, Spec};
+use glam::{EulerRot, Quat};
 
 use super::Resolved;
-
-/// A change of one object at an instant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TimedEvent {
-    /// When.
-    pub at_s: f64,
-    /// Index of the object.
-    pub object: u32,
-    /// Its piece, where only one changes: 0 is the object's own material, 1 its first part's.
-    pub piece: Option<u16>,
-    /// What happens.
-    pub effect: Effect,
-}
-
-/// What an event does.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Effect {
-    /// Adds to the velocity.
-    Push(Vec3),
-    /// Replaces the velocity.
-    Velocity(Vec3),
-    /// Makes it of other stuff; mass, place and speed stay.
-    Become(Stuff),
-    /// Multiplies moduli, yield stress and cohesion.
-    Weaken(f64),
-}
 
 /// A scene in motion.
 #[derive(Debug)]
@@ -43,12 +18,17 @@ pub struct World {
     gpu: Gpu,
     solver: Solver,
     events: Vec<TimedEvent>,
+    /// Events that wait for an impact, in the spec's order.
+    waiting: Vec<Waiting>,
     /// Piece of its object that each particle belongs to, and the particles of each object.
     piece: Vec<u16>,
     ranges: Vec<std::ops::Range<usize>>,
-    /// What each piece of each object is now, and was at the start.
-    stuffs: Vec<Vec<Stuff>>,
-    first_stuffs: Vec<Vec<Stuff>>,
+    /// Object of each pin.
+    pinned: Vec<String>,
+    names: Vec<String>,
+    /// What everything is now, and was at the start.
+    course: Course,
+    start: Course,
     fps: u32,
     frame: u32,
 }
@@ -60,21 +40,52 @@ pub struct Step {
     pub frame: u32,
     /// What the solver did on the way.
     pub advance: Vec<Advance>,
+    /// Events that waited for an impact, by their number among those, and when it came.
+    pub fired: Vec<(usize, f64)>,
     /// Whether it was stopped on the way.
     pub stopped: bool,
+}
+
+/// A state on its way back from the device; [`Checkpoint::bytes`] can wait for it on another thread.
+#[derive(Debug)]
+pub struct Checkpoint {
+    solver: solver::Checkpoint,
+    /// How far what waits has come, JSON.
+    waiting: Vec<u8>,
+}
+
+impl Checkpoint {
+    /// The solver's state, what waits, the length of that.
+    pub fn bytes(self) -> Result<Vec<u8>, SolverError> {
+        let mut bytes = self.solver.bytes()?;
+        bytes.extend_from_slice(&self.waiting);
+        bytes.extend_from_slice(&(self.waiting.len() as u64).to_le_bytes());
+        Ok(bytes)
+    }
 }
 
 impl World {
     /// A world in the captured pose, stress-free, not yet placed.
     pub fn new(gpu: &Gpu, spec: &Spec, matter: &Matter, resolved: &Resolved) -> Result<World, SolverError> {
         let solver = Solver::new(gpu, settings(spec, matter, resolved), &matter.particles)?;
-        let index_of = |name: &str| spec.objects.iter().position(|o| o.name == name);
-        let numbered = spec.events.iter().zip(&matter.changes);
-        let mut events: Vec<TimedEvent> = numbered.filter_map(|(e, change)| timed(e, change.as_ref(), index_of(&e.object)?, spec)).collect();
+        let all = spec.events.iter().zip(&matter.changes).filter_map(|(e, change)| TimedEvent::of(e, change.as_ref(), spec));
+        let (mut events, waiting): (Vec<_>, Vec<_>) = all.partition(|e| e.at_s.is_finite());
         events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
-        let (piece, ranges) = (matter.piece.clone(), matter.bodies.ranges.clone());
-        let stuffs = matter.stuffs.clone();
-        Ok(World { gpu: gpu.clone(), solver, events, piece, ranges, first_stuffs: stuffs.clone(), stuffs, fps: spec.time.fps, frame: 0 })
+        let course = Course::new(&matter.stuffs, &matter.frozen);
+        Ok(World {
+            gpu: gpu.clone(),
+            solver,
+            events,
+            waiting: waiting.into_iter().map(Waiting::new).collect(),
+            piece: matter.piece.clone(),
+            ranges: matter.bodies.ranges.clone(),
+            pinned: spec.pins.iter().map(|pin| pin.object.clone()).collect(),
+            names: spec.objects.iter().map(|object| object.name.clone()).collect(),
+            start: course.clone(),
+            course,
+            fps: spec.time.fps,
+            frame: 0,
+        })
     }
 
     /// Solves the prestress of every object that stands as captured.
@@ -109,26 +120,66 @@ impl World {
     pub fn step_frame(&mut self, stop: &Stop) -> Result<Step, SolverError> {
         let (from_s, to_s) = (self.time_s(self.frame), self.time_s(self.frame + 1));
         let due: Vec<TimedEvent> = self.events.iter().filter(|e| e.at_s >= from_s && e.at_s < to_s).cloned().collect();
-        let mut advance = Vec::new();
+        let mut step = Step { frame: self.frame, advance: Vec::new(), fired: Vec::new(), stopped: false };
         for event in due {
-            if event.at_s > from_s && !self.advance(event.at_s, stop, &mut advance)? {
-                return Ok(Step { frame: self.frame, advance, stopped: true });
+            if event.at_s > from_s && !self.go(event.at_s, stop, &mut step)? {
+                return Ok(Step { stopped: true, ..step });
             }
             self.apply(&event)?;
         }
-        if !self.advance(to_s, stop, &mut advance)? {
-            return Ok(Step { frame: self.frame, advance, stopped: true });
+        if !self.go(to_s, stop, &mut step)? {
+            return Ok(Step { stopped: true, ..step });
         }
         self.frame += 1;
-        Ok(Step { frame: self.frame, advance, stopped: false })
+        Ok(Step { frame: self.frame, ..step })
     }
 
-    /// Whether the time was reached.
-    fn advance(&mut self, to_s: f64, stop: &Stop, done: &mut Vec<Advance>) -> Result<bool, SolverError> {
-        let advance = self.solver.advance(to_s, stop)?;
-        let reached = !advance.stopped;
-        done.push(advance);
-        Ok(reached)
+    /// Goes on to a time, with the impacts on the way. Whether it was reached.
+    fn go(&mut self, to_s: f64, stop: &Stop, done: &mut Step) -> Result<bool, SolverError> {
+        loop {
+            let next_s = self.look_out(to_s, done)?;
+            let advance = self.solver.advance(next_s, stop)?;
+            let reached = !advance.stopped;
+            done.advance.push(advance);
+            if !reached || next_s >= to_s {
+                return Ok(reached);
+            }
+        }
+    }
+
+    /// Lets happen what waited for an impact that is there, and says until when none other is in sight.
+    fn look_out(&mut self, to_s: f64, done: &mut Step) -> Result<f64, SolverError> {
+        while self.waiting.iter().any(|w| w.state.fired_s.is_none()) {
+            let sight = self.solver.sight()?;
+            let now_s = self.solver.time_s();
+            let open = |w: &&mut Waiting| w.state.fired_s.is_none();
+            let met: Vec<TimedEvent> = self
+                .waiting
+                .iter_mut()
+                .enumerate()
+                .filter(|(_, w)| open(&w))
+                .filter_map(|(number, w)| {
+                    w.meets(&sight).then(|| {
+                        w.state.fired_s = Some(now_s);
+                        done.fired.push((number, now_s));
+                        TimedEvent { at_s: now_s, ..w.event.clone() }
+                    })
+                })
+                .collect();
+            if met.is_empty() {
+                // The same moments whatever else cuts a frame.
+                let look_s = 1.0 / f64::from(self.fps * impact::LOOKS);
+                let first = (now_s / look_s + 1e-6).floor() as u64 + 1;
+                let times_s: Vec<f64> = (first..).map(|k| k as f64 * look_s).take_while(|t| *t < to_s - 1e-9).collect();
+                let after_s: Vec<f32> = times_s.iter().map(|t| (t - now_s) as f32).collect();
+                let soonest = self.waiting.iter().filter(|w| w.state.fired_s.is_none()).filter_map(|w| w.soonest(&sight, &after_s)).min();
+                return Ok(soonest.map_or(to_s, |k| times_s[k]));
+            }
+            for event in met {
+                self.apply(&event)?;
+            }
+        }
+        Ok(to_s)
     }
 
     /// Applies an event now.
@@ -136,20 +187,38 @@ impl World {
         match &event.effect {
             Effect::Push(push) => self.solver.kick(event.object, *push),
             Effect::Velocity(velocity) => self.solver.set_velocity(event.object, *velocity),
-            Effect::Become(stuff) => {
-                let only = event.piece.map(|piece| self.particles_of(event.object, piece));
-                self.solver.change_material(event.object, only.as_deref(), Some(&stuff.substance), stuff.moduli())?;
-            }
-            Effect::Weaken(share) => {
-                for piece in pieces(event, &self.stuffs) {
-                    let only = self.particles_of(event.object, piece);
-                    let weaker = self.stuffs[event.object as usize][usize::from(piece)].weakened(*share);
-                    self.solver.change_material(event.object, Some(&only), Some(&weaker.substance), Moduli::Scaled(*share as f32))?;
-                }
-            }
+            Effect::Release => self.end_pins(event),
+            Effect::Become(_) | Effect::Weaken(_) | Effect::Freeze => {}
         }
-        note(event, &mut self.stuffs);
+        for (number, before, after) in self.course.changes(event) {
+            self.change(event, number, &before, &after)?;
+        }
+        self.course.note(event);
         Ok(())
+    }
+
+    /// Makes of one piece what an event makes of it.
+    fn change(&mut self, event: &TimedEvent, number: u16, before: &Piece, after: &Piece) -> Result<(), SolverError> {
+        let other = before.now != after.now;
+        let substance = other.then_some(&after.now.substance);
+        let only = || self.particles_of(event.object, number);
+        match event.effect {
+            Effect::Freeze if before.thawed.is_none() && !after.now.substance.is_rigid() => {
+                let moduli = if other { after.now.moduli() } else { Moduli::Kept };
+                self.solver.freeze(event.object, Some(&only()), substance, moduli)
+            }
+            Effect::Weaken(share) if other => self.solver.change_material(event.object, Some(&only()), substance, Moduli::Scaled(share as f32)),
+            Effect::Become(_) => self.solver.change_material(event.object, Some(&only()), Some(&after.now.substance), after.now.moduli()),
+            Effect::Release if other => self.solver.change_material(event.object, Some(&only()), substance, after.now.moduli()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Ends the pins of an event's object.
+    fn end_pins(&mut self, event: &TimedEvent) {
+        let Some(name) = self.names.get(event.object as usize) else { return };
+        let pins: Vec<usize> = (0..self.pinned.len()).filter(|&pin| self.pinned[pin] == *name).collect();
+        self.solver.end_pins(&pins, event.at_s);
     }
 
     /// Indices of the particles of one piece of an object.
@@ -176,59 +245,47 @@ impl World {
 
     /// The whole state, from which the same bits go on.
     pub fn checkpoint(&self) -> Result<Vec<u8>, SolverError> {
-        self.solver.checkpoint()
+        self.start_checkpoint()?.bytes()
     }
 
     /// As [`World::checkpoint`], without waiting for it.
     pub fn start_checkpoint(&self) -> Result<Checkpoint, SolverError> {
-        self.solver.start_checkpoint()
+        let states: Vec<&State> = self.waiting.iter().map(|w| &w.state).collect();
+        let waiting = serde_json::to_vec(&states).map_err(|e| SolverError::Checkpoint { what: e.to_string() })?;
+        Ok(Checkpoint { solver: self.solver.start_checkpoint()?, waiting })
     }
 
     /// Goes back to a state at a frame.
     pub fn restore(&mut self, frame: u32, bytes: &[u8]) -> Result<(), SolverError> {
-        self.solver.restore(bytes)?;
+        let refuse = |what: String| SolverError::Checkpoint { what };
+        let short = || refuse(format!("{} bytes", bytes.len()));
+        let (rest, length) = bytes.split_last_chunk::<8>().ok_or_else(short)?;
+        let solver = rest.len().checked_sub(u64::from_le_bytes(*length) as usize).ok_or_else(short)?;
+        let states: Vec<State> = serde_json::from_slice(&rest[solver..]).map_err(|e| refuse(e.to_string()))?;
+        self.solver.restore(&rest[..solver])?;
         self.frame = frame;
-        self.stuffs = self.first_stuffs.clone();
-        // What happens at the frame itself is still to come.
+        self.course = self.start.clone();
+        // What happens at the frame itself is still to come. The state of the captured pose is that of any events.
         let until_s = self.time_s(frame);
-        self.events.iter().filter(|event| event.at_s < until_s).for_each(|event| note(event, &mut self.stuffs));
+        let mut past: Vec<TimedEvent> = self.events.iter().filter(|event| event.at_s < until_s).cloned().collect();
+        if frame > 0 {
+            if states.len() != self.waiting.len() {
+                return Err(refuse(format!("{} events that wait, of {}", states.len(), self.waiting.len())));
+            }
+            self.waiting.iter_mut().zip(states).for_each(|(waiting, state)| waiting.state = state);
+            past.extend(self.waiting.iter().filter_map(|w| Some(TimedEvent { at_s: w.state.fired_s?, ..w.event.clone() })));
+            past.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+        }
+        for event in &past {
+            self.course.note(event);
+            if event.effect == Effect::Release {
+                self.end_pins(event);
+            }
+        }
         Ok(())
     }
 
     fn time_s(&self, frame: u32) -> f64 {
         f64::from(frame) / f64::from(self.fps)
     }
-}
-
-/// What an event does in a world; none for what a pin does or what does not have a time.
-fn timed(event: &Event, change: Option<&Stuff>, object: usize, spec: &Spec) -> Option<TimedEvent> {
-    let effect = match event {
-        Event { push_m_s: Some(push), .. } => Effect::Push(vec3(*push)),
-        Event { velocity_m_s: Some(velocity), .. } => Effect::Velocity(vec3(*velocity)),
-        Event { weaken: Some(share), .. } => Effect::Weaken(*share),
-        _ => Effect::Become(change?.clone()),
-    };
-    let part = event.part.as_ref().and_then(|name| spec.objects[object].parts.iter().position(|part| part.name == *name));
-    Some(TimedEvent { at_s: event.at_s?, object: object as u32, piece: part.map(|index| index as u16 + 1), effect })
-}
-
-/// The pieces that an event is about.
-fn pieces(event: &TimedEvent, stuffs: &[Vec<Stuff>]) -> Vec<u16> {
-    event.piece.map_or_else(|| (0..stuffs[event.object as usize].len() as u16).collect(), |piece| vec![piece])
-}
-
-/// Keeps in mind what an event makes of its pieces.
-fn note(event: &TimedEvent, stuffs: &mut [Vec<Stuff>]) {
-    for piece in pieces(event, stuffs) {
-        let stuff = &mut stuffs[event.object as usize][usize::from(piece)];
-        match &event.effect {
-            Effect::Become(next) => *stuff = next.clone(),
-            Effect::Weaken(share) => *stuff = stuff.weakened(*share),
-            Effect::Push(_) | Effect::Velocity(_) => {}
-        }
-    }
-}
-
-fn vec3(value: [f64; 3]) -> Vec3 {
-    Vec3::from(value.map(|v| v as f32))
 }

@@ -5,7 +5,7 @@ use super::measure::Bodies;
 use super::region::{self, bounds};
 use super::stuff::{Stuff, Yardstick};
 use crate::proxy::{self, Solid, YoungAuto};
-use crate::solver::{Particles, SolverError};
+use crate::solver::Particles;
 use crate::spec::{Auto, Material, Object, Rest, Spec};
 use glam::Vec3;
 
@@ -20,6 +20,8 @@ pub struct Matter {
     pub piece: Vec<u16>,
     /// What each piece of each object is at the start.
     pub stuffs: Vec<Vec<Stuff>>,
+    /// What each of them is when it freezes.
+    pub frozen: Vec<Vec<Stuff>>,
     /// Young's moduli that the spec left to the program, by path.
     pub young_auto: Vec<(String, f64)>,
     /// What each event of the spec makes of its object, in the spec's order; none where it changes no material.
@@ -37,7 +39,7 @@ pub struct Matter {
 }
 
 /// Gives each object's solid its materials, one `Solid` for each object of the spec.
-pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Result<Matter, SolverError> {
+pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Matter {
     let mut matter = Matter {
         particles: Particles::default(),
         bodies: Bodies {
@@ -49,6 +51,7 @@ pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Result<Matt
         },
         piece: Vec::new(),
         stuffs: Vec::new(),
+        frozen: Vec::new(),
         young_auto: Vec::new(),
         changes: vec![None; spec.events.len()],
         centre_m: Vec::new(),
@@ -58,9 +61,9 @@ pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Result<Matt
         notes: Vec::new(),
     };
     for (index, solid) in solids.iter().enumerate() {
-        add(&mut matter, spec, prepared, index, solid)?;
+        add(&mut matter, spec, prepared, index, solid);
     }
-    Ok(matter)
+    matter
 }
 
 /// The piece that each particle belongs to. Of parts that overlap the later one has what both claim.
@@ -88,7 +91,7 @@ fn pieces(object: &Object, points: &[Vec3], warnings: &mut Vec<String>) -> Vec<u
     piece
 }
 
-fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, solid: &Solid) -> Result<(), SolverError> {
+fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, solid: &Solid) {
     let object = &spec.objects[index];
     let members = prepared.gaussians.subset(&prepared.members(index as u32, false));
     let auto = proxy::young_auto(&solid.stance, object.material.density_kg_m3());
@@ -98,11 +101,11 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     let parts = object.parts.iter().map(|part| (format!("object.{}.part.{}", object.name, part.name), &part.material));
     let mut stuffs = Vec::new();
     for (path, material) in std::iter::once(own).chain(parts) {
-        stuffs.push(resolve(matter, &yard, material, &path)?);
+        stuffs.push(resolve(matter, &yard, material, &path));
     }
     for (number, event) in spec.events.iter().enumerate().filter(|(_, event)| event.object == object.name) {
         if let Some(material) = &event.material {
-            matter.changes[number] = Some(resolve(matter, &yard, material, &format!("event.{}", event.name))?);
+            matter.changes[number] = Some(resolve(matter, &yard, material, &format!("event.{}", event.name)));
         }
     }
     let standing = object.rest == Rest::AsCaptured;
@@ -136,20 +139,20 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     matter.bodies.mass_kg.extend(mass);
     matter.bodies.volume_m3.extend(&solid.volume_m3);
     matter.piece.extend(piece);
+    matter.frozen.push(stuffs.iter().map(|stuff| yard.frozen(stuff)).collect());
     matter.stuffs.push(stuffs);
     matter.centre_m.push((moment / total.max(f64::MIN_POSITIVE)).as_vec3());
     matter.fill_ratio.push(f64::from(solid.fill_ratio));
     matter.gaussians.push(prepared.members(index as u32, true).len());
-    Ok(())
 }
 
 /// A material as the solver takes it; an automatic modulus is written down.
-fn resolve(matter: &mut Matter, yard: &Yardstick, material: &Material, owner: &str) -> Result<Stuff, SolverError> {
-    let stuff = yard.stuff(material)?;
+fn resolve(matter: &mut Matter, yard: &Yardstick, material: &Material, owner: &str) -> Stuff {
+    let stuff = yard.stuff(material);
     if material.young_pa() == Some(Auto::Auto) {
         matter.young_auto.push((format!("{owner}.material.young_pa"), stuff.young_pa));
     }
-    Ok(stuff)
+    stuff
 }
 
 /// Says where an object that stands as captured cannot: an automatic modulus says so of itself.

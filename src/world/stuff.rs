@@ -1,6 +1,6 @@
 //! A material in the solver's terms: its law, its moduli, and what `"auto"` means for them.
 
-use crate::solver::{Activation, Moduli, SolverError, Substance, liquid_bulk_pa};
+use crate::solver::{Activation, Moduli, Substance, liquid_bulk_pa};
 use crate::spec::{self, Auto, LiquidSolver, Material};
 use glam::DVec3;
 
@@ -8,6 +8,8 @@ use glam::DVec3;
 const FLOWING_STRAIN: f64 = 0.01;
 /// Softest and stiffest automatic value of a thing that flows, Pa: stiffer ones only cost steps.
 const FLOWING_PA: (f64, f64) = (1e4, 1e6);
+/// Compression under its own weight that what froze out of a liquid has.
+const FROZEN_STRAIN: f64 = 2e-3;
 /// Standard gravity, whatever the spec's is, so that a thing is the same stuff everywhere.
 const STANDARD_M_S2: f64 = 9.81;
 
@@ -51,14 +53,25 @@ impl Yardstick {
         (3.0 * bulk_pa * (1.0 - 2.0 * material.poisson().unwrap_or(0.0))).clamp(FLOWING_PA.0, FLOWING_PA.1)
     }
 
-    /// A material of this object as the solver takes it. A law that the solver does not have is an error.
-    pub fn stuff(&self, material: &Material) -> Result<Stuff, SolverError> {
+    /// A material of this object as the solver takes it.
+    pub fn stuff(&self, material: &Material) -> Stuff {
         // A body has no modulus.
         let young_pa = match material {
             Material::Rigid(_) => 0.0,
             _ => material.young_pa().unwrap_or(Auto::Auto).unwrap_or(self.young_pa(material)),
         };
-        Ok(Stuff { substance: substance(material)?, young_pa, poisson: material.poisson().unwrap_or(0.0), density_kg_m3: material.density_kg_m3() })
+        Stuff { substance: substance(material), young_pa, poisson: material.poisson().unwrap_or(0.0), density_kg_m3: material.density_kg_m3() }
+    }
+}
+
+impl Yardstick {
+    /// What some stuff of this object freezes to: itself where it keeps its shape, else an elastic solid.
+    pub fn frozen(&self, stuff: &Stuff) -> Stuff {
+        if stuff.substance.keeps_shape() {
+            return stuff.clone();
+        }
+        let young_pa = stuff.density_kg_m3 * STANDARD_M_S2 * self.height_m.max(f64::MIN_POSITIVE) / FROZEN_STRAIN;
+        Stuff { substance: Substance::Elastic(spec::ElasticModel::Corotated), young_pa, poisson: 0.3, density_kg_m3: stuff.density_kg_m3 }
     }
 }
 
@@ -88,24 +101,25 @@ impl Stuff {
     }
 }
 
-fn substance(material: &Material) -> Result<Substance, SolverError> {
+fn substance(material: &Material) -> Substance {
     match material {
-        Material::Rigid(m) => Ok(Substance::Rigid { friction: m.friction as f32, restitution: m.restitution as f32 }),
-        Material::Elastic(m) => Ok(Substance::Elastic(m.model)),
+        Material::Rigid(m) => Substance::Rigid { friction: m.friction as f32, restitution: m.restitution as f32 },
+        Material::Elastic(m) => Substance::Elastic(m.model),
         Material::Muscle(m) => {
             let fibre = DVec3::from(m.fibre).normalize_or(DVec3::Z).as_vec3();
-            Ok(Substance::Muscle { model: m.model, fibre, activation: activation(&m.activation) })
+            Substance::Muscle { model: m.model, fibre, activation: activation(&m.activation) }
         }
-        Material::Plastic(m) => Ok(Substance::Plastic { yield_stress_pa: m.yield_stress_pa as f32, hardening_pa: m.hardening_pa as f32 }),
-        Material::Viscoplastic(m) => {
-            Ok(Substance::Viscoplastic { yield_stress_pa: m.yield_stress_pa as f32, viscosity_pa_s: m.viscosity_pa_s as f32 })
+        Material::Plastic(m) => Substance::Plastic { yield_stress_pa: m.yield_stress_pa as f32, hardening_pa: m.hardening_pa as f32 },
+        Material::Viscoplastic(m) => Substance::Viscoplastic { yield_stress_pa: m.yield_stress_pa as f32, viscosity_pa_s: m.viscosity_pa_s as f32 },
+        Material::Sand(m) => Substance::Sand { friction_angle_deg: m.friction_angle_deg as f32, cohesion_pa: m.cohesion_pa as f32 },
+        Material::Snow(m) => Substance::Snow { theta_c: m.theta_c as f32, theta_s: m.theta_s as f32, hardening: m.hardening as f32 },
+        Material::Liquid(m) => {
+            let (viscosity_pa_s, surface_tension_n_m) = (m.viscosity_pa_s as f32, m.surface_tension_n_m as f32);
+            match m.solver {
+                LiquidSolver::Mpm => Substance::Liquid { viscosity_pa_s, surface_tension_n_m },
+                LiquidSolver::Sph => Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m },
+            }
         }
-        Material::Sand(m) => Ok(Substance::Sand { friction_angle_deg: m.friction_angle_deg as f32, cohesion_pa: m.cohesion_pa as f32 }),
-        Material::Snow(m) => Ok(Substance::Snow { theta_c: m.theta_c as f32, theta_s: m.theta_s as f32, hardening: m.hardening as f32 }),
-        Material::Liquid(m) if m.solver == LiquidSolver::Mpm => {
-            Ok(Substance::Liquid { viscosity_pa_s: m.viscosity_pa_s as f32, surface_tension_n_m: m.surface_tension_n_m as f32 })
-        }
-        other => Err(SolverError::Input { what: format!("a {} material", other.kind()), expected: "a kind whose law it has".to_owned() }),
     }
 }
 

@@ -12,7 +12,7 @@ use super::Material;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum When {
-    /// The first time that the object meets the ground, a collider or another object after it met none.
+    /// The first time that the object meets the ground, a collider or another object that it did not touch before.
     Impact,
 }
 
@@ -28,13 +28,13 @@ pub struct Event {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "f64", range(min = 0.0, max = limits::TIME_S))]
     pub at_s: Option<f64>,
-    /// Or when this occurs, looked for at the start of every frame.
+    /// Or when this occurs, the first time; see below.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "When")]
     pub when: Option<When>,
     /// To which object.
     pub object: String,
-    /// Only to this part of it, where its material changes or weakens.
+    /// Only to this part of it, where its material changes, weakens or freezes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub part: Option<String>,
@@ -54,10 +54,11 @@ pub struct Event {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "f64", range(min = limits::WEAKEN.0, max = limits::WEAKEN.1))]
     pub weaken: Option<f64>,
-    /// Holds all of it still where it is, until it is released.
+    /// Makes it a solid of the shape that it has then, free of stress and moving on: what it was at the start where that
+    /// kept its shape, else an elastic one. A release melts it again.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub freeze: bool,
-    /// Ends every pin of the object that has begun, and a freeze.
+    /// Ends every pin of the object that has begun, and undoes a freeze.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub release: bool,
 }
