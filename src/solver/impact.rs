@@ -131,8 +131,8 @@ fn apart_m(a: &[(Vec3, f32)], b: &[(Vec3, f32)]) -> f32 {
 
 /// Distance of the nearest two points of two sets; infinite where it is over `most_m`.
 fn nearest_m(a: &[(Vec3, f32)], b: &[(Vec3, f32)], most_m: f32) -> f32 {
-    // NaN where a set is empty.
-    if !(apart_m(a, b) <= most_m) {
+    // Infinitely far where a set is empty.
+    if apart_m(a, b) > most_m {
         return f32::INFINITY;
     }
     let (low, high) = bounds(a);

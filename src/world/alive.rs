@@ -157,7 +157,7 @@ impl World {
                 .waiting
                 .iter_mut()
                 .enumerate()
-                .filter(|(_, w)| open(&w))
+                .filter(|(_, w)| open(w))
                 .filter_map(|(number, w)| {
                     w.meets(&sight).then(|| {
                         w.state.fired_s = Some(now_s);
