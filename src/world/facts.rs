@@ -7,6 +7,8 @@ use crate::spec::{Axis, Camera};
 pub struct Facts {
     /// One entry for each object of the spec, in its order.
     pub objects: Vec<ObjectFacts>,
+    /// Of each, the share of its height at which its colours above and below differ most: where a bouquet leaves its vase.
+    pub seams: Vec<f64>,
     /// Height of the ground plane.
     pub ground_m: f64,
     /// The camera that the spec resolves to.

@@ -13,6 +13,7 @@ pub mod measure;
 mod prepared;
 mod region;
 mod resolve;
+mod seam;
 mod settings;
 mod stuff;
 
@@ -21,5 +22,5 @@ pub use event::{Effect, TimedEvent};
 pub use facts::{Facts, ObjectFacts};
 pub use figure::Figure;
 pub use prepared::{Prepared, support_below};
-pub use resolve::{Resolved, resolve};
+pub use resolve::{CELLS_ACROSS_DRAFT, CELLS_ACROSS_FULL, Resolved, resolve};
 pub use stuff::Stuff;

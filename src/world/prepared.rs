@@ -1,6 +1,6 @@
 //! A scene read, turned upright and divided into objects: what every later stage starts from.
 
-use super::{Facts, ObjectFacts};
+use super::{Facts, ObjectFacts, seam};
 use crate::scene::Gaussians;
 use crate::spec::{Axis, Camera, Collider, ColliderShape, Spec};
 use glam::{DVec2, DVec3, Quat, Vec3};
@@ -38,7 +38,9 @@ impl Prepared {
 
     /// Everything the language and the camera need to know of the objects.
     pub fn facts(&self, spec: &Spec, camera: Camera) -> Facts {
-        Facts { objects: self.object_facts(spec), ground_m: self.ground_m, camera, has_static: self.object_of.contains(&u32::MAX) }
+        let seam = |object: usize| seam::of(&self.gaussians, &self.members(object as u32, false));
+        let seams = (0..spec.objects.len()).map(seam).collect();
+        Facts { objects: self.object_facts(spec), seams, ground_m: self.ground_m, camera, has_static: self.object_of.contains(&u32::MAX) }
     }
 
     /// One entry for each object of the spec, in its order.

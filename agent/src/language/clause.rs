@@ -266,6 +266,10 @@ impl Clause {
             | Sense::Condition
             | Sense::Question
             | Sense::Camera
+            | Sense::Smoothed(_)
+            | Sense::Backdrop(_)
+            | Sense::PictureSize(_)
+            | Sense::Reseed
             | Sense::For(_)
             | Sense::Negation => true,
             Sense::Measure(quantity, _) => matches!(quantity.dimension, Dimension::Pressure | Dimension::Density | Dimension::FrameRate),
@@ -342,8 +346,11 @@ pub const HARD: f64 = 1.75;
 pub fn step(property: Property) -> f64 {
     match property {
         Property::Stiffness | Property::Hardness | Property::Density | Property::Friction | Property::Gravity | Property::Bounce => 2.0,
-        Property::Height | Property::Speed | Property::Strength | Property::Size | Property::Duration | Property::Distance => 1.5,
-        Property::FieldOfView | Property::FrameRate | Property::Poisson => 1.25,
+        Property::Cohesion | Property::Yield => 2.0,
+        // It takes that much to be seen.
+        Property::Viscosity | Property::Tension | Property::Hold | Property::Stick => 4.0,
+        Property::Height | Property::Speed | Property::Strength | Property::Size | Property::Duration | Property::Distance | Property::Detail => 1.5,
+        Property::FieldOfView | Property::FrameRate | Property::Poisson | Property::Slope => 1.25,
     }
 }
 

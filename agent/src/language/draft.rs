@@ -3,6 +3,7 @@
 
 use super::Context;
 use super::clause::Clause;
+use super::clauses::when::When;
 use super::directions::Frame;
 use super::reference;
 use super::say;
@@ -115,11 +116,11 @@ impl<'a> Draft<'a> {
         &mut self.spec.objects[index].material
     }
 
-    /// Its Young's modulus, where its material has one.
-    pub fn young_pa(&mut self, index: usize) -> Result<&mut Auto<f64>, Refusal> {
-        let object = &mut self.spec.objects[index];
-        let refusal = format!("{} is {}: it has no stiffness; \"make it of rubber\" gives it one", object.name, object.material.kind());
-        object.material.young_pa_mut().ok_or(refusal)
+    /// The share of an object's height at which its colours above and below differ most.
+    pub fn seam(&self, index: usize) -> f64 {
+        let name = &self.spec.objects[index].name;
+        let known = self.context.facts.objects.iter().zip(&self.context.facts.seams).find(|(facts, _)| facts.name == *name);
+        known.map_or(0.5, |(_, seam)| *seam)
     }
 
     /// What is known of an object's shape. An object without facts is a metre cube on the ground.
@@ -199,17 +200,31 @@ impl<'a> Draft<'a> {
         self.spec.objects[index].velocity_m_s = say::tidy3(velocity + (speed_m_s - velocity.dot(unit)) * unit);
     }
 
-    /// Adds a push at a time, or replaces the object's push at that time.
-    pub fn push_at(&mut self, index: usize, at_s: f64, push_m_s: DVec3, stem: &str) {
-        let object = self.name(index);
+    /// Adds a push then, or replaces the object's push then.
+    pub fn push_at(&mut self, index: usize, when: When, push_m_s: DVec3, stem: &str) {
         let push = Some(say::tidy3(push_m_s));
-        let same = |e: &&mut Event| e.object == object && e.at_s.is_some_and(|t| (t - at_s).abs() < 1e-9) && e.push_m_s.is_some();
+        self.happen(index, None, when, stem, |event| event.push_m_s = push, |event| event.push_m_s.is_some());
+    }
+
+    /// Adds an event of an object, or of a part of it, or changes the one that there is then of that `kind`.
+    pub fn happen(
+        &mut self,
+        index: usize,
+        part: Option<String>,
+        when: When,
+        stem: &str,
+        fill: impl FnOnce(&mut Event),
+        kind: impl Fn(&Event) -> bool,
+    ) {
+        let object = self.name(index);
+        let same = |e: &&mut Event| e.object == object && e.part == part && when.is_of(e) && kind(e);
         if let Some(event) = self.spec.events.iter_mut().find(same) {
-            event.push_m_s = push;
-            return;
+            return fill(event);
         }
         let name = self.free_name(stem, |spec, name| spec.events.iter().any(|e| e.name == name));
-        self.spec.events.push(Event { push_m_s: push, ..Event::at(&name, &object, say::tidy(at_s)) });
+        let mut event = Event { part, ..when.event(&name, &object) };
+        fill(&mut event);
+        self.spec.events.push(event);
     }
 
     /// The first of stem1, stem2, … that is not in use.

@@ -84,6 +84,7 @@ pub struct Context<'a> {
 pub fn understand(text: &str, context: &Context) -> Reply {
     let names = Names::new(context.spec.objects.iter().map(|o| o.name.as_str()));
     let mut reading = phrases::read(tokens::tokenise(text), &names);
+    reference::demote_parts(&mut reading);
     if context.spec.objects.len() == 1 {
         reference::presume(&mut reading, 0);
     }

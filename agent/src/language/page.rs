@@ -1,11 +1,11 @@
 //! `docs/phrases.md`, made from the lexicon and from what the phrasebook says to examples.
 
 use super::clause::{HARD, step};
-use super::clauses::{adjust, camera, motion, place};
+use super::clauses::{camera, motion, place, stuff};
 use super::directions;
 use super::lexicon::SECTIONS;
 use super::numbers::UNITS;
-use super::sense::{Field, Form, Part, Property, Sense, Unbuilt, Verb};
+use super::sense::{Fate, Field, Form, Moment, Part, Property, Sense, Unbuilt, Verb};
 use super::tests::Stage;
 use super::{Reply, say};
 use std::fmt::Write;
@@ -61,11 +61,35 @@ const EXAMPLES: &[(&str, &[&str])] = &[
             "stiffness 30 kPa",
             "as soft as foam",
             "turn it into lava",
+            "turn it into water as particles",
+            "make it water, thicker",
+            "turn it into honey | it holds together more",
+            "make it sand | stickier",
+            "the flowers are rubber and the pot is steel",
+            "the flowers are jelly | only the upper third",
+            "the left half is clay",
+            "drop it from 1 m, it shatters into sand when it hits the ground",
+            "melts at 1 s",
+            "drop it of water from 1 m and it freezes when it lands",
+            "softer at 1 s",
+            "it breathes",
         ],
     ),
     (
         "World and time",
-        &["do it on the moon", "half the gravity", "zero gravity", "on ice", "bouncier", "for 3 seconds", "twice as long", "at 100 fps"],
+        &[
+            "do it on the moon",
+            "half the gravity",
+            "zero gravity",
+            "on ice",
+            "bouncier",
+            "for 3 seconds",
+            "twice as long",
+            "at 100 fps",
+            "finer",
+            "on a white background",
+            "full hd",
+        ],
     ),
     ("Camera", &["look from above", "camera from the left at 2 m", "zoom in a bit", "orbit once", "wider", "reset the camera"]),
     (
@@ -163,7 +187,7 @@ fn amounts(page: &mut String) {
             format!("a factor of {}; \"a bit\" its square root, \"much\" its square", step(Property::Stiffness)),
         ),
         ("higher, faster, stronger, longer, closer", format!("a factor of {}", step(Property::Height))),
-        ("a material's stiffness before the first run", say::pressure(adjust::YOUNG_BEFORE_RUN_PA)),
+        ("a material's stiffness before the first run", say::pressure(stuff::YOUNG_BEFORE_RUN_PA)),
         ("an orbit, a step of the camera", format!("{}° a second, {}°", camera::ORBIT_DEG_S, camera::STEP_DEG)),
     ];
     for (of, is) in rows {
@@ -192,6 +216,7 @@ fn meaning(sense: &Sense) -> String {
         Sense::Verb(Verb::Push(_)) => "push".to_owned(),
         Sense::Verb(Verb::Zoom(sign)) => if *sign > 0.0 { "camera closer" } else { "camera further away" }.to_owned(),
         Sense::Verb(Verb::Field(field)) => field_name(*field).to_owned(),
+        Sense::Verb(Verb::Change(fate)) => fate_name(*fate).to_owned(),
         Sense::Gusty => "of wind: in gusts".to_owned(),
         Sense::Verb(verb) => format!("{verb:?}").to_lowercase(),
         Sense::Change(sign) => if *sign > 0.0 { "more" } else { "less" }.to_owned(),
@@ -218,7 +243,13 @@ fn meaning(sense: &Sense) -> String {
             super::sense::Pose::Upright => "upright",
         }
         .to_owned(),
-        Sense::Moment(moment) => format!("at its {moment:?}, predicted").to_lowercase(),
+        Sense::Moment(Moment::Apex) => "at its apex, predicted".to_owned(),
+        Sense::Moment(Moment::Landing) => "when it meets something, found by the run".to_owned(),
+        Sense::Smoothed(true) => "a liquid by smoothed particles".to_owned(),
+        Sense::Smoothed(false) => "a liquid on the grid".to_owned(),
+        Sense::Backdrop(colour) => format!("background {colour}"),
+        Sense::PictureSize([width, height]) => format!("pictures of {width} × {height}"),
+        Sense::Reseed => "the next seed".to_owned(),
         Sense::Turn(word) => format!("{word:?}").to_lowercase(),
         Sense::Version(number) => format!("v{number}"),
         Sense::Preposition(preposition) => format!("*{preposition:?}*").to_lowercase(),
@@ -254,6 +285,14 @@ fn property_name(property: Property) -> &'static str {
         Property::FrameRate => "frames a second",
         Property::FieldOfView => "field of view",
         Property::Poisson => "Poisson's ratio",
+        Property::Detail => "cells of the grid",
+        Property::Viscosity => "viscosity",
+        Property::Tension => "surface tension",
+        Property::Cohesion => "cohesion of grains",
+        Property::Hold => "what holds it together: surface tension, cohesion, yield stress",
+        Property::Stick => "cohesion of grains, viscosity of liquids, else friction of what is below",
+        Property::Yield => "yield stress",
+        Property::Slope => "friction angle of grains",
     }
 }
 
@@ -265,11 +304,30 @@ fn part_name(part: Part) -> &'static str {
         Part::UpperHalf => "the upper half",
         Part::LowerThird => "the lowest third",
         Part::UpperThird => "the highest third",
+        Part::MiddleThird => "the middle third",
+        Part::LeftHalf => "the left half, as it faces",
+        Part::RightHalf => "the right half",
+        Part::FrontHalf => "the front half",
+        Part::BackHalf => "the back half",
+        Part::Flowers => "what is above the height at which its colours change most",
+        Part::Pot => "what is below that",
+    }
+}
+
+fn fate_name(fate: Fate) -> &'static str {
+    match fate {
+        Fate::Melt => "becomes a thick liquid; beside a material, that",
+        Fate::Freeze => "becomes a solid of the shape that it has",
+        Fate::Crumble => "becomes loose grains; beside a material, that",
+        Fate::Dissolve => "becomes water",
+        Fate::Pulse => "becomes a muscle that pulls once a second",
+        Fate::Shatter => "beside a material, becomes that",
     }
 }
 
 fn field_name(field: Field) -> &'static str {
     match field {
+        Field::Spring => "on a spring",
         Field::Swirl => "swirling air",
         Field::Explode => "a blast from its middle",
         Field::Attract => "a pull to its middle",
@@ -291,7 +349,6 @@ fn unbuilt_name(what: Unbuilt) -> &'static str {
         Unbuilt::Gas => "gases",
         Unbuilt::Muscle => "things that move themselves",
         Unbuilt::Heat => "heat",
-        Unbuilt::Fracture => "breaking",
         Unbuilt::Deform => "squeezing and bending",
         Unbuilt::Look => "colours and light",
         Unbuilt::Scene => "size and number of things",

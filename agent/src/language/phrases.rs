@@ -4,7 +4,7 @@
 
 use super::lexicon::{PATTERNS, SECTIONS};
 use super::numbers::{self, Dimension, Quantity};
-use super::sense::{Form, Preposition, Property, Sense};
+use super::sense::{Form, Moment, Preposition, Property, Sense};
 use super::tokens::Token;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -116,10 +116,13 @@ fn read_one(tokens: &[Token], at: usize, names: &Names) -> Option<(Sense, usize)
     let name = names.read(tokens, at).map(|(objects, length)| (Sense::Objects(objects), length));
     let pattern = pattern(tokens, at);
     let measure = span_of_time(tokens, at).or_else(|| measure(tokens, at));
-    [name, pattern, measure, version(tokens, at)].into_iter().flatten().fold(None, |best: Option<(Sense, usize)>, next| match best {
-        Some(best) if best.1 >= next.1 => Some(best),
-        _ => Some(next),
-    })
+    [name, pattern, measure, version(tokens, at), landing(tokens, at, names)].into_iter().flatten().fold(
+        None,
+        |best: Option<(Sense, usize)>, next| match best {
+            Some(best) if best.1 >= next.1 => Some(best),
+            _ => Some(next),
+        },
+    )
 }
 
 fn pattern(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
@@ -138,6 +141,53 @@ fn measure(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
         _ => Sense::Measure(quantity, None),
     };
     Some((sense, end - at))
+}
+
+/// "when the vase hits the floor", "as soon as it touches something": who meets what goes by whom the clause is about.
+fn landing(tokens: &[Token], at: usize, names: &Names) -> Option<(Sense, usize)> {
+    let word = |i: usize| tokens.get(i).map_or("", |t| t.word.as_str());
+    let article = |i: usize| usize::from(matches!(word(i), "the" | "a" | "an" | "its"));
+    let who = match (word(at), word(at + 1), word(at + 2)) {
+        ("when" | "once" | "if" | "after", ..) => at + 1,
+        ("the", "moment", _) => at + 2,
+        ("as", "soon", "as") => at + 3,
+        _ => return None,
+    };
+    let named = |i: usize| names.read(tokens, i).map_or(1, |(_, length)| length);
+    let verb = match word(who) {
+        "it" | "they" => who + 1,
+        _ => who + article(who) + named(who + article(who)),
+    };
+    if !matches!(
+        word(verb),
+        "land"
+            | "lands"
+            | "hit"
+            | "hits"
+            | "touch"
+            | "touches"
+            | "strike"
+            | "strikes"
+            | "meet"
+            | "meets"
+            | "collide"
+            | "collides"
+            | "crash"
+            | "crashes"
+    ) {
+        return None;
+    }
+    let preposition = usize::from(matches!(word(verb + 1), "on" | "onto" | "into" | "with" | "against"));
+    let what = verb + 1 + preposition;
+    let what = what + article(what);
+    let known =
+        matches!(word(what), "ground" | "floor" | "table" | "surface" | "plinth" | "shelf" | "desk" | "wall" | "something" | "anything" | "it");
+    let length = match names.read(tokens, what) {
+        Some((_, length)) => length,
+        None => usize::from(known),
+    };
+    let end = if length > 0 { what + length } else { verb + 1 };
+    Some((Sense::Moment(Moment::Landing), end - at))
 }
 
 /// "from 0.2 s to 1 s", "from 0.2 to 1 s", "between 0.2 and 1 s".

@@ -2,8 +2,26 @@
 //! a capture is named after its file, and people say what they see. Among several objects nobody can know.
 
 use super::phrases::{Phrase, Reading};
-use super::sense::{Preposition, Sense};
+use super::sense::{Part, Preposition, Sense, Verb};
 use std::ops::Range;
+
+/// Nouns of parts ("flowers", "pot") are such only where the stretch asks for something that a part can have: "push the
+/// flowers" means the thing that they stand in.
+pub fn demote_parts(reading: &mut Reading) {
+    for stretch in reading.phrases.split_mut(|p| p.sense == Sense::Separator) {
+        let noun = |s: &Sense| matches!(s, Sense::Part(Part::Flowers | Part::Pot));
+        let moves =
+            |s: &Sense| matches!(s, Sense::Verb(verb) if !matches!(verb, Verb::Pin | Verb::Release | Verb::Change(_) | Verb::Turn | Verb::Move));
+        let had = |s: &Sense| {
+            matches!(s, Sense::Material(_) | Sense::Quality(..) | Sense::Property(_) | Sense::Unbuilt(_) | Sense::Smoothed(_) | Sense::Measure(..))
+                || matches!(s, Sense::Verb(Verb::Pin | Verb::Release | Verb::Change(_)))
+                || matches!(s, Sense::Part(_)) && !noun(s)
+        };
+        if stretch.iter().any(|p| moves(&p.sense)) || !stretch.iter().any(|p| had(&p.sense)) {
+            stretch.iter_mut().filter(|p| noun(&p.sense)).for_each(|p| p.sense = Sense::Unknown);
+        }
+    }
+}
 
 /// Reads unknown nouns in the place of an object as `object`, the only one, and notes their tokens as presumed.
 pub fn presume(reading: &mut Reading, object: usize) {

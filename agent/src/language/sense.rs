@@ -55,6 +55,25 @@ pub enum Verb {
     Reset,
     /// Is driven by a field.
     Field(Field),
+    /// Becomes other stuff.
+    Change(Fate),
+}
+
+/// What becomes of a thing by itself. Beside a material these only say that it turns into that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// A thick liquid of its own weight.
+    Melt,
+    /// A solid of the shape that it has.
+    Freeze,
+    /// Loose grains.
+    Crumble,
+    /// Water.
+    Dissolve,
+    /// A muscle that pulls again and again.
+    Pulse,
+    /// Pieces.
+    Shatter,
 }
 
 /// What drives things all along, beside pulls and wind.
@@ -76,6 +95,8 @@ pub enum Field {
     Shake,
     /// Keeps turning.
     Motor,
+    /// On a spring that draws it to where it starts.
+    Spring,
 }
 
 /// What can be more or less.
@@ -111,6 +132,22 @@ pub enum Property {
     FieldOfView,
     /// Poisson's ratio.
     Poisson,
+    /// How fine the grid is.
+    Detail,
+    /// How thick a liquid is.
+    Viscosity,
+    /// Its surface tension.
+    Tension,
+    /// What grains bear without pressure.
+    Cohesion,
+    /// How well it holds together, whatever does that.
+    Hold,
+    /// "Sticky": of grains their cohesion, of liquids how thick they are, else the friction of the ground.
+    Stick,
+    /// The stress at which it dents or flows.
+    Yield,
+    /// The slope of a heap.
+    Slope,
 }
 
 /// How an adjective stands.
@@ -174,7 +211,7 @@ pub enum View {
     Auto,
 }
 
-/// Part of an object's height.
+/// Part of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// The lowest twentieth.
@@ -189,6 +226,20 @@ pub enum Part {
     LowerThird,
     /// The highest third.
     UpperThird,
+    /// The third between them.
+    MiddleThird,
+    /// Its left half, as it faces.
+    LeftHalf,
+    /// Its right half.
+    RightHalf,
+    /// Its front half.
+    FrontHalf,
+    /// Its back half.
+    BackHalf,
+    /// What is above the height at which its colours change most.
+    Flowers,
+    /// What is below it.
+    Pot,
 }
 
 /// How it starts.
@@ -243,12 +294,10 @@ pub enum Unbuilt {
     Grains,
     /// Smoke and the like.
     Gas,
-    /// Muscle.
+    /// Walking, swimming.
     Muscle,
-    /// Melting, freezing, burning.
+    /// Burning, boiling.
     Heat,
-    /// Breaking.
-    Fracture,
     /// Squeezing, shaking.
     Deform,
     /// Colour and light.
@@ -310,6 +359,14 @@ pub enum Sense {
     Turn(TurnWord),
     /// The name of a version.
     Version(u32),
+    /// Of a liquid: solved by smoothed particles, or on the grid.
+    Smoothed(bool),
+    /// The colour behind the picture.
+    Backdrop(&'static str),
+    /// Width and height of the picture.
+    PictureSize([u32; 2]),
+    /// Other random numbers.
+    Reseed,
     /// Of wind: it comes in gusts.
     Gusty,
     /// The edge of what it stands on.

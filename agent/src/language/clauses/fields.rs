@@ -8,7 +8,7 @@ use super::super::sense::{Direction, Field, Sense, Verb};
 use super::motion::{axis_name, lasts, strength, take_side};
 use glam::DVec3;
 use phystalk::spec::expression::{Kind, parse};
-use phystalk::spec::{Acceleration, Attractor, Auto, Drag, Explosion, Force, Motor, Until, Vortex, Wind};
+use phystalk::spec::{Acceleration, Attractor, Auto, Drag, Explosion, Force, Motor, Spring, Until, Vortex, Wind};
 use std::f64::consts::TAU;
 
 /// Speed of a wind that nobody gave, for an object of one metre: it slides at the default friction, and bends.
@@ -27,6 +27,8 @@ const WATER_PER_S: f64 = 4.0;
 const SWAY: (f64, f64) = (6.0, TAU);
 /// Of shaking: five times a second.
 const SHAKE: (f64, f64) = (30.0, 5.0 * TAU);
+/// Stiffness of a spring that nobody gave: about one swing a second.
+const SPRING_PER_S2: f64 = 40.0;
 /// How far gusts go from the mean of a gusty wind, as a share of it.
 const GUSTY: f64 = 0.5;
 
@@ -117,6 +119,16 @@ fn one(field: Field, ask: &Ask, span: (f64, Until), draft: &mut Draft, object: u
             };
             draft.gloss.push(format!("{name} is driven to and fro, {times} a second, with {}{when}", say::acceleration(amount)));
         }
+        Field::Spring => {
+            let start = DVec3::from_array(draft.facts(object).centre_m) + DVec3::from_array(draft.spec.objects[object].offset_m);
+            // A stronger one swings faster, and comes to rest in as many swings.
+            let stiffness_per_s2 = say::tidy(SPRING_PER_S2 * ask.strength);
+            let damping_per_s = say::tidy(0.3 * stiffness_per_s2.sqrt());
+            let spring = Spring { to_m: Some(say::tidy3(start)), path_m: Vec::new(), stiffness_per_s2, damping_per_s };
+            put(draft, &name, "spring", span, |force| force.spring = Some(spring));
+            let swings = say::short(stiffness_per_s2.sqrt() / TAU);
+            draft.gloss.push(format!("{name} is on a spring that draws it to where it starts: {swings} swings a second{when}"));
+        }
         Field::Motor => {
             let speed_rad_s = say::tidy(ask.turn() * ask.rate.unwrap_or(TAU * ask.strength));
             let motor = Motor { centre_m: Auto::Auto, axis: [0.0, 0.0, 1.0], speed_rad_s, rate_per_s: 5.0 };
@@ -203,5 +215,6 @@ pub fn stem(field: Field) -> &'static str {
         Field::Sway => "swing",
         Field::Shake => "shake",
         Field::Motor => "motor",
+        Field::Spring => "spring",
     }
 }

@@ -4,13 +4,15 @@ use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
 use super::super::numbers::Dimension;
 use super::super::say;
-use super::super::sense::{Part, Pose, Sense, Verb};
+use super::super::sense::{Pose, Sense, Verb};
+use super::parts::{self, Portion};
+use super::when::When;
 use phystalk::spec::{Event, Pin, Region, Until};
 
 /// "hold the base", "pin the top from 0.2 s to 1 s".
 pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let objects = draft.subjects(clause)?;
-    let part = take_part(clause);
+    let part = parts::take(clause);
     clause.take_sense(&Sense::Ground);
     clause.take_directions();
     let span = clause.take(|s| match s {
@@ -20,8 +22,9 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let from_s = span.map(|s| s.0).or_else(|| clause.take_at()).unwrap_or(0.0);
     let until = span.map(|s| s.1).or_else(|| clause.take_until()).or_else(|| clause.take_for().map(|f| from_s + f));
     let to_s = until.map_or(Until::End, |to| Until::Time(say::tidy(to)));
-    let (stem, region, said) = part.map_or(("hold", Region::Above(0.0), "all"), region_of);
     for &object in &objects {
+        let whole = Portion { stem: "hold", region: Region::Above(0.0), said: "all", chosen: None };
+        let Portion { stem, region, said, .. } = part.map_or(whole, |part| parts::portion(draft, object, part));
         let object = draft.name(object);
         let same = draft.spec.pins.iter_mut().find(|p| p.object == object && p.region == region);
         match same {
@@ -38,49 +41,34 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// A part of an object's height: what it is called in a spec, where it is, and how it is said.
-pub fn region_of(part: Part) -> (&'static str, Region, &'static str) {
-    match part {
-        Part::Base => ("base", Region::Below(0.05), "the lowest twentieth"),
-        Part::Top => ("top", Region::Above(0.95), "the highest twentieth"),
-        Part::LowerHalf => ("lower-half", Region::Below(0.5), "the lower half"),
-        Part::UpperHalf => ("upper-half", Region::Above(0.5), "the upper half"),
-        Part::LowerThird => ("lower-third", Region::Below(0.333333), "the lowest third"),
-        Part::UpperThird => ("upper-third", Region::Above(0.666667), "the highest third"),
-    }
-}
-
 /// "let go at 1 s", "let go".
 pub fn release(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let objects = draft.subjects(clause)?;
-    take_part(clause);
-    let at_s = clause.take_at();
+    parts::take(clause);
+    let when = When::take(clause, draft, objects[0])?;
     for &object in &objects {
-        let object = draft.name(object);
-        if !draft.spec.pins.iter().any(|p| p.object == object) {
-            return Err(format!("nothing holds {object}: \"hold the base\" does"));
+        let name = draft.name(object);
+        let frozen = draft.spec.events.iter().any(|e| super::stuff::freezes(e, &name));
+        if !frozen && !draft.spec.pins.iter().any(|p| p.object == name) {
+            return Err(format!("nothing holds {name}: \"hold the base\" does"));
         }
-        match at_s {
-            Some(at) => {
-                for pin in draft.spec.pins.iter_mut().filter(|p| p.object == object && p.from_s < at) {
-                    pin.to_s = Until::Time(say::tidy(at));
+        match when {
+            When::At(at) if !frozen => {
+                for pin in draft.spec.pins.iter_mut().filter(|p| p.object == name && p.from_s < at) {
+                    pin.to_s = Until::Time(at);
                 }
-                draft.gloss.push(format!("{object} is let go at {}", say::seconds(at)));
             }
-            None => {
-                draft.spec.pins.retain(|p| p.object != object);
-                draft.gloss.push(format!("nothing holds {object} any more"));
+            When::At(_) | When::Impact => draft.happen(object, None, when, "release", |event| event.release = true, |event| event.release),
+            When::Start => {
+                draft.spec.pins.retain(|p| p.object != name);
+                draft.spec.events.retain(|e| !(e.object == name && (e.freeze || e.release)));
+                draft.gloss.push(format!("nothing holds {name} any more"));
+                continue;
             }
         }
+        draft.gloss.push(format!("{name} is let go{}", when.said()));
     }
     Ok(())
-}
-
-pub fn take_part(clause: &mut Clause) -> Option<Part> {
-    clause.take(|s| match s {
-        Sense::Part(part) => Some(*part),
-        _ => None,
-    })
 }
 
 /// "stop spinning", "no jump", "don't push it", "remove the wind", "stop it at 1 s", "stand still". The word that

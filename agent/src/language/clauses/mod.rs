@@ -1,12 +1,18 @@
 //! One clause, understood: which families of verbs and adjectives read it, and in which order.
 
 pub mod adjust;
+pub mod amounts;
 pub mod camera;
+pub mod fate;
 pub mod fields;
 pub mod hold;
 pub mod motion;
+pub mod pace;
+pub mod parts;
 pub mod place;
+pub mod stuff;
 pub mod turns;
+pub mod when;
 pub mod world;
 
 use super::clause::Clause;
@@ -34,6 +40,9 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     if world::turn_gravity(clause, draft) {
         return Ok(());
     }
+    if parts::is_about_borders(clause) {
+        return parts::correct(clause, draft).map(|_| ());
+    }
     if camera::is_about_camera(clause) {
         return camera::understand(clause, draft);
     }
@@ -47,9 +56,10 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
         place::pose(pose, clause, draft)?;
     }
     if let Some(name) = material {
-        adjust::material(name, clause, draft)?;
+        stuff::material(name, clause, draft)?;
     }
     verbs(clause, draft)?;
+    stuff::solve_as(clause, draft)?;
     if !place::take_rise(clause, draft)? {
         adjust::understand(clause, draft)?;
     }
@@ -81,6 +91,7 @@ fn verbs(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
             Verb::Release => hold::release(clause, draft)?,
             Verb::Rest | Verb::Stop => hold::cancel(clause, draft)?,
             Verb::Field(field) => fields::understand(field, clause, draft)?,
+            Verb::Change(fate) => fate::understand(fate, clause, draft)?,
             _ => motion::understand(verb, clause, draft)?,
         }
     }
@@ -151,7 +162,6 @@ pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
         Unbuilt::Gas => format!("{}gases are not built; {elastic}", is("a gas")),
         Unbuilt::Muscle => format!("{words}: things that move themselves are not built yet; jumps, pushes, throws and spins are"),
         Unbuilt::Heat => format!("{words}: heat is not built yet; {elastic}"),
-        Unbuilt::Fracture => format!("{words}: breaking is not built yet; {elastic}"),
         Unbuilt::Deform => format!("{words}: only pushes, pulls, fields and pins move things; \"softer\" and \"push it\" make it wobble"),
         Unbuilt::Look => format!("{words}: colours and light are not built yet; motion, material, world and camera are"),
         Unbuilt::Scene => format!("{words}: changing the size or number of things is not built yet"),

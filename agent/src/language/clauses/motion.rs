@@ -9,7 +9,8 @@ use super::super::directions::from_side;
 use super::super::draft::{Draft, Refusal};
 use super::super::numbers::Dimension;
 use super::super::say;
-use super::super::sense::{Direction, Moment, Property, Sense, Verb};
+use super::super::sense::{Direction, Property, Sense, Verb};
+use super::when::When;
 use glam::DVec3;
 use phystalk::spec::{ColliderShape, Force, Until};
 use std::f64::consts::TAU;
@@ -28,37 +29,26 @@ pub const PULL_M_S2: f64 = 3.0;
 /// Reads one verb of motion with all that belongs to it.
 pub fn understand(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let objects = draft.subjects(clause)?;
-    let at_s = moment(clause, draft, objects[0])?;
+    let when = When::take(clause, draft, objects[0])?;
     match verb {
-        Verb::Jump => jump(clause, draft, &objects, at_s),
+        Verb::Jump => return jump(clause, draft, &objects, when),
+        Verb::Throw => return throw(clause, draft, &objects, when),
+        Verb::Push(strength) if !lasting(clause) => return push(strength, clause, draft, &objects, when),
+        _ => {}
+    }
+    let at_s = when.time_s(draft, objects[0])?;
+    match verb {
         Verb::Somersault => somersault(clause, draft, &objects, at_s),
-        Verb::Push(strength) => push(strength, clause, draft, &objects, at_s),
-        Verb::Throw => throw(clause, draft, &objects, at_s),
         Verb::Spin | Verb::Roll => spin(verb, clause, draft, &objects, at_s),
         Verb::Blow if !clause.has(is_acceleration) => super::fields::wind(clause, draft, &objects, at_s),
+        Verb::Push(_) => pull(Verb::Pull, clause, draft, &objects, at_s),
         _ => pull(verb, clause, draft, &objects, at_s),
     }
 }
 
-/// When: "at 0.5 s", "in mid-air", "when it lands". The latter two are predicted from the jump that the spec holds.
-pub fn moment(clause: &mut Clause, draft: &Draft, object: usize) -> Result<Option<f64>, Refusal> {
-    let moment = clause.take(|s| match s {
-        Sense::Moment(moment) => Some(*moment),
-        _ => None,
-    });
-    let Some(moment) = moment else { return Ok(clause.take_at()) };
-    let gravity = draft.gravity_m_s2();
-    let rising = draft.spec.objects[object].velocity_m_s[2].max(0.0);
-    let gap = draft.gap_m(object).max(0.0);
-    if gravity < 1e-6 || (rising == 0.0 && gap == 0.0) {
-        return Err("it does not fly, so there is no such moment: give a time, as in \"at 0.5 s\"".to_owned());
-    }
-    let apex = rising / gravity;
-    let at_s = match moment {
-        Moment::Apex => apex,
-        Moment::Landing => apex + (apex * apex + 2.0 * gap / gravity).sqrt(),
-    };
-    Ok(Some((at_s * 1e3).round() / 1e3))
+/// Whether a push goes on for a while, or is told by its acceleration.
+fn lasting(clause: &Clause) -> bool {
+    clause.has(|s| matches!(s, Sense::For(_) | Sense::Span(..) | Sense::Until(_)) || is_acceleration(s))
 }
 
 /// How strong a verb is to be: adverbs and adjectives together, 1 where there are none.
@@ -74,7 +64,7 @@ pub fn strength(verb: Verb, clause: &mut Clause) -> (f64, Option<Scale>) {
     (adverbs * hard, scale)
 }
 
-fn jump(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<f64>) -> Result<(), Refusal> {
+fn jump(clause: &mut Clause, draft: &mut Draft, objects: &[usize], when: When) -> Result<(), Refusal> {
     let height = clause.take_measure_or_plain(Dimension::Length).map(|(h, _)| h);
     let heights = clause.take_heights();
     let speed = clause.take_measure(Dimension::Speed).map(|(v, _)| v);
@@ -90,7 +80,7 @@ fn jump(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<
         let rising = draft.spec.objects[object].velocity_m_s[2].max(0.0);
         let usual = JUMP_HEIGHTS * draft.facts(object).height_m();
         // "higher" starts from the jump that is there.
-        let from = if scale.is_some_and(|s| s.compared) && rising > 0.0 && at_s.is_none() { rising * rising / (2.0 * gravity) } else { usual };
+        let from = if scale.is_some_and(|s| s.compared) && rising > 0.0 && when == When::Start { rising * rising / (2.0 * gravity) } else { usual };
         let rise = match (height.or(heights.map(|n| n * draft.facts(object).height_m())), speed) {
             (Some(height), _) => height.abs(),
             (None, Some(speed)) => speed * speed / (2.0 * gravity),
@@ -101,18 +91,14 @@ fn jump(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<
         let name = draft.name(object);
         let under = if (gravity - 9.81).abs() < 1e-6 { String::new() } else { format!(" under {}", say::acceleration(gravity)) };
         let also = aside.as_ref().map(|(_, said)| format!(", {said} at {}", say::speed(up / 2.0))).unwrap_or_default();
-        match at_s {
-            Some(at_s) => {
+        match when {
+            When::At(_) | When::Impact => {
                 let velocity = up * DVec3::Z + aside.map_or(DVec3::ZERO, |(unit, _)| unit * up / 2.0);
-                draft.push_at(object, at_s, velocity, "jump");
-                draft.gloss.push(format!(
-                    "{name} jumps at {}: {} up, enough for {}{under}{also}",
-                    say::seconds(at_s),
-                    say::speed(up),
-                    say::metres(rise)
-                ));
+                draft.push_at(object, when, velocity, "jump");
+                let (said, up, rise) = (when.said(), say::speed(up), say::metres(rise));
+                draft.gloss.push(format!("{name} jumps{said}: {up} up, enough for {rise}{under}{also}"));
             }
-            None => {
+            When::Start => {
                 draft.set_speed_along(object, DVec3::Z, up);
                 if let Some((unit, _)) = aside {
                     draft.set_speed_along(object, unit, up / 2.0);
@@ -137,7 +123,7 @@ fn somersault(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: O
         return Err(LATER_SPIN.to_owned());
     }
     let backward = clause.take_directions().contains(&Direction::Backward);
-    jump(clause, draft, objects, None)?;
+    jump(clause, draft, objects, When::Start)?;
     let gravity = draft.gravity_for_heights_m_s2();
     for &object in objects {
         let flight_s = 2.0 * draft.spec.objects[object].velocity_m_s[2] / gravity;
@@ -150,17 +136,15 @@ fn somersault(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: O
     Ok(())
 }
 
-fn push(strength_of_word: f64, clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<f64>) -> Result<(), Refusal> {
-    if clause.has(|s| matches!(s, Sense::For(_) | Sense::Span(..) | Sense::Until(_)) || is_acceleration(s)) {
-        return pull(Verb::Pull, clause, draft, objects, at_s);
-    }
+fn push(strength_of_word: f64, clause: &mut Clause, draft: &mut Draft, objects: &[usize], when: When) -> Result<(), Refusal> {
     let off_edge = clause.take_sense(&Sense::Edge);
     let speed = clause.take_measure_or_plain(Dimension::Speed).map(|(v, _)| v);
     let mut directions = clause.take_directions();
     directions.extend(take_side(clause));
     let (strength, scale) = strength(Verb::Push(0.0), clause);
-    if scale.is_some_and(|s| s.compared) && directions.is_empty() && speed.is_none() && at_s.is_none() && super::adjust::has_speed(draft, objects) {
-        return super::adjust::speed(draft, objects, strength);
+    if scale.is_some_and(|s| s.compared) && directions.is_empty() && speed.is_none() && when == When::Start && super::pace::has_speed(draft, objects)
+    {
+        return super::pace::speed(draft, objects, strength);
     }
     let replace = clause.take_sense(&Sense::Instead);
     for &object in objects {
@@ -177,12 +161,12 @@ fn push(strength_of_word: f64, clause: &mut Clause, draft: &mut Draft, objects: 
         }
         let name = draft.name(object);
         let said = format!("{name} is pushed {}{assumed}", heading.said);
-        match at_s {
-            Some(at_s) => {
-                draft.push_at(object, at_s, heading.unit * speed, "push");
-                draft.gloss.push(format!("{said} at {}: {} more", say::seconds(at_s), say::speed(speed)));
+        match when {
+            When::At(_) | When::Impact => {
+                draft.push_at(object, when, heading.unit * speed, "push");
+                draft.gloss.push(format!("{said}{}: {} more", when.said(), say::speed(speed)));
             }
-            None => {
+            When::Start => {
                 if replace {
                     let up = draft.spec.objects[object].velocity_m_s[2];
                     draft.object(object).velocity_m_s = [0.0, 0.0, up];
@@ -212,7 +196,7 @@ fn speed_to_edge(draft: &Draft, object: usize, unit: DVec3) -> Result<f64, Refus
     Ok(1.3 * (2.0 * friction * draft.gravity_m_s2() * distance_m).sqrt())
 }
 
-fn throw(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<f64>) -> Result<(), Refusal> {
+fn throw(clause: &mut Clause, draft: &mut Draft, objects: &[usize], when: When) -> Result<(), Refusal> {
     let length = clause.take_measure(Dimension::Length);
     let high = clause.has(|s| matches!(s, Sense::Quality(Property::Height, ..) | Sense::Direction(Direction::Up)));
     let speed = clause.take_measure_or_plain(Dimension::Speed).map(|(v, _)| v);
@@ -240,12 +224,12 @@ fn throw(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option
         let velocity = speed * (elevation.cos() * heading.unit.with_z(0.0).normalize_or_zero() + elevation.sin() * DVec3::Z);
         let way = if straight_up { "up".to_owned() } else { format!("{}{assumed} and up at {}°", heading.said, say::short(elevation.to_degrees())) };
         let said = format!("{} is thrown {way}: {}", draft.name(object), say::speed(speed));
-        match at_s {
-            Some(at_s) => {
-                draft.push_at(object, at_s, velocity, "throw");
-                draft.gloss.push(format!("{said} at {}", say::seconds(at_s)));
+        match when {
+            When::At(_) | When::Impact => {
+                draft.push_at(object, when, velocity, "throw");
+                draft.gloss.push(format!("{said}{}", when.said()));
             }
-            None => {
+            When::Start => {
                 draft.object(object).velocity_m_s = say::tidy3(velocity);
                 draft.gloss.push(said);
             }

@@ -200,7 +200,7 @@ pub fn amend(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
                 let event = &mut draft.spec.events[i];
                 event.push_m_s = Some(say::tidy3(new));
                 if let Some(at_s) = clause.take_at() {
-                    event.at_s = Some(say::tidy(at_s));
+                    (event.at_s, event.when) = (Some(say::tidy(at_s)), None);
                 }
                 let at = event.at_s.map_or(String::new(), |at_s| format!(" at {}", say::seconds(at_s)));
                 format!("{} of {} goes{way}{at}: {} more", event.name, thing.name, say::speed(speed))

@@ -42,6 +42,23 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) {
     if let Some(friction) = surface {
         set_all_friction(draft, friction);
     }
+    picture(clause, draft);
+}
+
+/// The picture's background and size, and the random numbers.
+fn picture(clause: &mut Clause, draft: &mut Draft) {
+    if let Some(colour) = clause.take(|s| if let Sense::Backdrop(colour) = s { Some(*colour) } else { None }) {
+        draft.spec.output.background = colour.to_owned();
+        draft.gloss.push(format!("the background is {colour}"));
+    }
+    if let Some([width, height]) = clause.take(|s| if let Sense::PictureSize(size) = s { Some(*size) } else { None }) {
+        draft.spec.output.size = Auto::Value([width, height]);
+        draft.gloss.push(format!("pictures of {width} × {height}"));
+    }
+    if clause.take_sense(&Sense::Reseed) {
+        draft.spec.seed = (draft.spec.seed + 1).min(phystalk::spec::limits::SEED);
+        draft.gloss.push(format!("seed {}", draft.spec.seed));
+    }
 }
 
 /// Sets how strong free fall is; its direction stays, downwards where there was none.

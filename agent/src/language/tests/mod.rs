@@ -38,7 +38,7 @@ impl Stage {
             }
         });
         let camera = Camera { eye_m: [-3.48, -1.96, 1.2], target_m: [0.0, 0.0, 0.5], fov_deg: 45.0, orbit_deg_s: 0.0 };
-        let facts = Facts { objects: objects.collect(), ground_m: 0.0, camera, has_static: false };
+        let facts = Facts { objects: objects.collect(), seams: vec![0.42; names.len()], ground_m: 0.0, camera, has_static: false };
         let mut resolved = serde_json::Map::new();
         for name in names {
             resolved.insert(format!("object.{name}.material.young_pa"), 200_000.0.into());

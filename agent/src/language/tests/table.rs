@@ -184,7 +184,7 @@ fn an_amount_that_nobody_takes_refuses_the_turn() {
         ("bounce three times", "\"three times\"", "bouncier"),
         ("tip it over on the moon in 1 second", "\"1 second\"", "push it at 1 s"),
         ("jump twice", "\"twice\"", "jump at 1 s"),
-        ("make it softer at 1 s", "\"1 s\"", "push it left at 1 s"),
+        ("make it bouncier at 1 s", "\"1 s\"", "push it left at 1 s"),
         ("push it left and make it 3 m softer", "\"3 m\"", "jump 30 cm"),
         ("jump for 20 percent", "\"20 percent\"", "softer"),
     ] {

@@ -1,0 +1,71 @@
+//! Verbs that make other stuff of a thing: melting, freezing, crumbling, dissolving, pulsing.
+
+use super::super::clause::Clause;
+use super::super::draft::{Draft, Refusal};
+use super::super::say;
+use super::super::sense::Fate;
+use super::parts;
+use super::stuff::{become_stuff, freezes};
+use super::when::When;
+use phystalk::spec::{Activation, Elastic, Liquid, Material, Muscle, Sand, Wave, presets};
+
+/// Time in which a melt of any size sinks together: its viscosity is its weight over its foot times this.
+const MELT_S: f64 = 0.2;
+/// How hard a thing that pulses pulls, as a share of its stiffness, and how long a pulse takes.
+const PULSE: (f64, f64) = (0.2, 1.0);
+
+/// Reads one such verb with all that belongs to it.
+pub fn understand(fate: Fate, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    let part = parts::take(clause);
+    let objects = draft.subjects(clause)?;
+    let when = When::take(clause, draft, objects[0])?;
+    for object in objects {
+        let owner = parts::owner(draft, object, part);
+        let name = draft.name(object);
+        let density_kg_m3 = draft.stuff(&owner).density_kg_m3();
+        match fate {
+            Fate::Melt if draft.spec.events.iter().any(|e| freezes(e, &name)) && when != When::Start => {
+                draft.happen(object, None, when, "thaw", |event| event.release = true, |event| event.release);
+                draft.gloss.push(format!("{name} is what it was before it froze,{}", when.said()));
+            }
+            Fate::Melt => {
+                let weight_pa = density_kg_m3 * 9.81 * draft.facts(object).height_m();
+                let viscosity_pa_s = say::tidy((weight_pa * MELT_S).clamp(1.0, 1e5));
+                let melt = Liquid { density_kg_m3, viscosity_pa_s, surface_tension_n_m: 0.05, ..Liquid::default() };
+                become_stuff(draft, &owner, when, "a melt of itself", Material::Liquid(melt), "");
+            }
+            Fate::Dissolve => {
+                let water = presets::material("water").map(|p| p.material.clone()).unwrap_or_default();
+                become_stuff(draft, &owner, when, "water", water, "");
+            }
+            Fate::Crumble => {
+                let sand = Sand { density_kg_m3, ..Sand::default() };
+                become_stuff(draft, &owner, when, "loose grains", Material::Sand(sand), "");
+            }
+            Fate::Freeze if when == When::Start => {
+                return Err("when? \"it freezes at 1 s\", \"drop it from 1 m, it freezes when it lands\"".to_owned());
+            }
+            Fate::Freeze => {
+                let part = owner.part.map(|part| draft.spec.objects[object].parts[part].name.clone());
+                draft.happen(object, part, when, "freeze", |event| event.freeze = true, |event| event.freeze);
+                draft.gloss.push(format!("{} freezes{}: a solid of the shape that it has then", owner.said, when.said()));
+            }
+            Fate::Pulse => {
+                let elastic = match draft.stuff(&owner) {
+                    Material::Elastic(elastic) => elastic.clone(),
+                    _ => Elastic { density_kg_m3, ..Elastic::default() },
+                };
+                let Elastic { young_pa, poisson, density_kg_m3, .. } = elastic;
+                let wave = Wave { least: 0.0, most: PULSE.0, period_s: PULSE.1, phase: 0.0 };
+                let muscle = Muscle { young_pa, poisson, density_kg_m3, activation: Activation::Wave(wave), ..Muscle::default() };
+                become_stuff(draft, &owner, when, "a muscle that pulls upright once a second", Material::Muscle(muscle), "");
+            }
+            Fate::Shatter => {
+                return Err(
+                    "breaking into pieces is not built yet; \"it shatters into sand\" and \"it crumbles\" are, \"when it lands\" too".to_owned()
+                );
+            }
+        }
+    }
+    Ok(())
+}

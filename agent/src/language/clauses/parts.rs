@@ -1,0 +1,175 @@
+//! Parts of an object as words call them: shares of its height, halves, flowers and their pot.
+
+use super::super::clause::Clause;
+use super::super::draft::{Draft, Refusal};
+use super::super::sense::{Direction, Part, Sense};
+use glam::DVec3;
+use phystalk::spec::{self, BoxShape, Material, PlaneShape, Region};
+
+/// An object, or a part of it that words may speak of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Owner {
+    /// Index of the object.
+    pub object: usize,
+    /// Index of the part.
+    pub part: Option<usize>,
+    /// How it is said: "vase", "the upper half of vase".
+    pub said: String,
+}
+
+/// A part as it was said, and where it is.
+pub struct Portion {
+    /// What it is called in a spec.
+    pub stem: &'static str,
+    /// Where it is.
+    pub region: Region,
+    /// "the upper half".
+    pub said: &'static str,
+    /// How its border was chosen, where nobody said.
+    pub chosen: Option<String>,
+}
+
+impl Draft<'_> {
+    /// What an owner is made of.
+    pub fn stuff(&mut self, owner: &Owner) -> &mut Material {
+        let object = &mut self.spec.objects[owner.object];
+        match owner.part {
+            Some(part) => &mut object.parts[part].material,
+            None => &mut object.material,
+        }
+    }
+
+    /// Where its material is in the spec.
+    pub fn stuff_path(&self, owner: &Owner) -> String {
+        let object = &self.spec.objects[owner.object];
+        match owner.part {
+            Some(part) => format!("object.{}.part.{}.material", object.name, object.parts[part].name),
+            None => format!("object.{}.material", object.name),
+        }
+    }
+}
+
+/// The part that a clause names.
+pub fn take(clause: &mut Clause) -> Option<Part> {
+    clause.take(|s| match s {
+        Sense::Part(part) => Some(*part),
+        _ => None,
+    })
+}
+
+/// Whom a clause is about: objects, or the part of each that it names, which is made where there is none.
+pub fn owners(clause: &mut Clause, draft: &mut Draft) -> Result<Vec<Owner>, Refusal> {
+    let part = take(clause);
+    let objects = draft.subjects(clause)?;
+    Ok(objects.into_iter().map(|object| owner(draft, object, part)).collect())
+}
+
+/// An object, or the named part of it.
+pub fn owner(draft: &mut Draft, object: usize, part: Option<Part>) -> Owner {
+    let name = draft.name(object);
+    let Some(part) = part else { return Owner { object, part: None, said: name } };
+    let mut portion = portion(draft, object, part);
+    // A twentieth is enough to hold it by, and too little to be of other stuff.
+    (portion.region, portion.said) = match part {
+        Part::Top => (Region::Above(0.666667), "the highest third"),
+        Part::Base => (Region::Below(0.333333), "the lowest third"),
+        _ => (portion.region, portion.said),
+    };
+    let said = format!("{} of {name}", portion.said);
+    let parts = &draft.spec.objects[object].parts;
+    // By its name first: a part that was given another border is still called what it was.
+    let known = parts.iter().position(|p| p.name == portion.stem).or_else(|| parts.iter().position(|p| p.region == portion.region));
+    if let Some(index) = known {
+        return Owner { object, part: Some(index), said };
+    }
+    let said = match &portion.chosen {
+        Some(chosen) => format!("{said} ({chosen})"),
+        None => said,
+    };
+    let thing = draft.object(object);
+    let material = thing.material.clone();
+    thing.parts.push(spec::Part { name: portion.stem.to_owned(), region: portion.region, material });
+    Owner { object, part: Some(thing.parts.len() - 1), said }
+}
+
+/// Where a part of an object is. Sides are the object's own, in the captured pose.
+pub fn portion(draft: &Draft, object: usize, part: Part) -> Portion {
+    let facts = draft.facts(object);
+    let (low, high) = (DVec3::from_array(facts.low_m), DVec3::from_array(facts.high_m));
+    let middle = 0.5 * (low + high);
+    let side = |towards: Direction| {
+        // Behind a plane is where its normal does not point.
+        let normal = (-draft.frame(object).unit(towards)).to_array().map(|x| if x == 0.0 { 0.0 } else { x });
+        Region::HalfSpace(PlaneShape { point_m: super::super::say::tidy3(middle), normal })
+    };
+    let waist = || {
+        let room = 0.1 * (high - low).max_element();
+        let size_m = [high.x - low.x + room, high.y - low.y + room, (high.z - low.z) / 3.0].map(super::super::say::tidy);
+        Region::Box(BoxShape { centre_m: super::super::say::tidy3(middle), size_m })
+    };
+    let seam = draft.seam(object);
+    let chosen = |side: &str, instead: &str| {
+        let height = super::super::say::short(100.0 * seam);
+        Some(format!("what is {side} {height} % of its height, where its colours change most; \"the {instead} third\" says otherwise"))
+    };
+    let (stem, region, said, chosen) = match part {
+        Part::Base => ("base", Region::Below(0.05), "the lowest twentieth", None),
+        Part::Top => ("top", Region::Above(0.95), "the highest twentieth", None),
+        Part::LowerHalf => ("lower-half", Region::Below(0.5), "the lower half", None),
+        Part::UpperHalf => ("upper-half", Region::Above(0.5), "the upper half", None),
+        Part::LowerThird => ("lower-third", Region::Below(0.333333), "the lowest third", None),
+        Part::MiddleThird => ("middle-third", waist(), "the middle third", None),
+        Part::UpperThird => ("upper-third", Region::Above(0.666667), "the highest third", None),
+        Part::LeftHalf => ("left-half", side(Direction::Left), "the left half", None),
+        Part::RightHalf => ("right-half", side(Direction::Right), "the right half", None),
+        Part::FrontHalf => ("front-half", side(Direction::Forward), "the front half", None),
+        Part::BackHalf => ("back-half", side(Direction::Backward), "the back half", None),
+        Part::Flowers => ("flowers", Region::Above(seam), "flowers", chosen("above", "flowers are the upper")),
+        Part::Pot => ("pot", Region::Below(seam), "pot", chosen("below", "pot is the lower")),
+    };
+    Portion { stem, region, said, chosen }
+}
+
+/// "only the upper half", "the flowers are the upper third": another border for a part that is there, the one that is
+/// named or that the newest turn made. Whether the clause was that.
+pub fn correct(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
+    let parts = clause.take_all(|s| match s {
+        Sense::Part(part) => Some(*part),
+        _ => None,
+    });
+    let (named, border) = match parts.as_slice() {
+        [border] => (None, *border),
+        [named, border] => (Some(*named), *border),
+        _ => return Ok(false),
+    };
+    let object = draft.subjects(clause)?[0];
+    let before = draft.context.previous_spec.and_then(|spec| spec.objects.iter().find(|o| o.name == draft.spec.objects[object].name));
+    let stem = named.map(|part| portion(draft, object, part).stem);
+    let newest = |p: &spec::Part| before.is_none_or(|before| !before.parts.contains(p));
+    let parts = &draft.spec.objects[object].parts;
+    let found = parts.iter().rposition(|p| stem.map_or_else(|| newest(p), |stem| p.name == stem));
+    let Some(index) = found else { return Err("that part has no material of its own yet: \"the upper half is rubber\"".to_owned()) };
+    let border = portion(draft, object, border);
+    let part = &mut draft.object(object).parts[index];
+    part.region = border.region;
+    let line = format!("{} of {} is {}", part.name.clone(), draft.name(object), border.said);
+    draft.gloss.push(line);
+    Ok(true)
+}
+
+/// Whether a clause speaks of nothing but parts.
+pub fn is_about_borders(clause: &Clause) -> bool {
+    let other = |s: &Sense| {
+        matches!(
+            s,
+            Sense::Verb(_)
+                | Sense::Material(_)
+                | Sense::Quality(..)
+                | Sense::Property(_)
+                | Sense::Unbuilt(_)
+                | Sense::Measure(..)
+                | Sense::Smoothed(_)
+        )
+    };
+    clause.has(|s| matches!(s, Sense::Part(_))) && !clause.phrases().iter().any(|p| other(&p.sense))
+}
