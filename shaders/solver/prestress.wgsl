@@ -22,6 +22,8 @@ struct Search {
     // Rounds since the system was set up.
     rounds: u32,
     done: u32,
+    // Supports that were let go of, because they would have had to pull.
+    released: f32,
 }
 
 // What a pass of the search is for, in the immediates' last word. It is read through `steer` with a

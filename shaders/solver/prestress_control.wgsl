@@ -18,7 +18,7 @@ fn main(@builtin(local_invocation_index) lane: u32) {
     }
     let job = steer(substep.job, params.count);
     if (job == SET_UP || job == ADOPT) {
-        search = Search(0.0, 0.0, sum.z, 0.0, sum.x, sum.y, 0u, 0u);
+        search = Search(0.0, 0.0, sum.z, 0.0, sum.x, sum.y, 0u, 0u, sum.w);
     } else if (job == CURVATURE) {
         // No curvature along the direction, or a number that is none: as far as f32 goes.
         if (!(sum.x > 0.0)) {

@@ -59,6 +59,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         let force = select(vec3<f32>(0.0), vec3<f32>(sum.xyz) / momentum_unit, mass > 0.0);
 
         // The first time, with no stress yet, the force is the node's weight.
+        var released = 0.0;
         let first = steer(substep.job, params.count) == SET_UP;
         var bound = nodes[BOUND * count + k];
         var weight = nodes[SOLUTION * count + k].w;
@@ -78,6 +79,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         } else if (bound.w == 1.0 && dot(force, bound.xyz) > RELEASE * weight * mass) {
             // A support only pushes.
             bound = vec4<f32>(0.0);
+            released = 1.0;
         }
         let left = hold(force, bound);
         let step = select(vec3<f32>(0.0), left / mass, mass > 0.0);
@@ -87,7 +89,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         nodes[SOLUTION * count + k] = vec4<f32>(vec3<f32>(0.0), weight);
         velocity[node] = vec4<f32>(step, 0.0);
         // Square of acceleration over gravity's, weighted by the node's weight.
-        share = vec4<f32>(select(0.0, dot(step, step) * mass / weight, weight > 0.0), weight * mass, dot(left, step), 0.0);
+        share = vec4<f32>(select(0.0, dot(step, step) * mass / weight, weight > 0.0), weight * mass, dot(left, step), released);
     }
     let sum = workgroup_sum(lane, share);
     if (lane == 0u && alive) {

@@ -15,6 +15,7 @@ mod join;
 mod nearest;
 mod sample;
 mod sections;
+mod thicken;
 mod young;
 
 #[cfg(test)]
@@ -29,7 +30,7 @@ use body::Body;
 use glam::Vec3;
 
 /// Version of this room, for stage keys.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 /// Share of the solid whose loss is worth a warning.
 const NOTABLE_SHARE: f64 = 1e-3;
 
@@ -130,11 +131,12 @@ struct Shape {
     joined: join::Joined,
 }
 
-/// The solid of an object's Gaussians: shell, what it encloses, loose pieces joined.
+/// The solid of an object's Gaussians: shell, what it encloses, loose pieces joined, nothing thinner than the Gaussians' spacing.
 fn shape(gaussians: &Gaussians, ground_m: f32) -> Result<Shape, ProxyError> {
     let density = density::rasterise(gaussians, ground_m, fill::CLOSING_SPACINGS)?;
     let mut solid = fill::solid(&density.grid, &density.occupied, density.spacing_m);
     let joined = join::join(&density.grid, &mut solid, density.spacing_m);
+    thicken::thicken(&density.grid, &mut solid);
     Ok(Shape { density, solid, joined })
 }
 

@@ -9,9 +9,7 @@ use glam::Vec3;
 
 /// No section.
 const NONE: u32 = u32::MAX;
-/// A leg ends where the section next to it is this much larger.
-const LEG_GROWTH: f64 = 3.0;
-/// The cut of a part is averaged over this share of its height: a narrower spot is too short to bend.
+/// A cut is averaged over this share of the height of what stands on it: a narrower spot is too short to bend.
 const CUT_SHARE: f64 = 0.1;
 
 /// The sections of all layers, highest layer first.
@@ -26,6 +24,8 @@ pub(super) struct Sections {
 
 struct Section {
     voxels: u32,
+    /// Sums of x, y, x x, y y and x y over its voxels, in voxels.
+    sums: [f64; 5],
     above: Vec<u32>,
     below: Vec<u32>,
 }
@@ -38,8 +38,10 @@ pub(super) struct Cut {
     pub volume_m3: f64,
     /// Twice the height of its centre of mass above the cut: a column's height, which a few thin tips do not change.
     pub height_m: f64,
-    /// Area it stands on, averaged over the lowest tenth of the height (harmonic mean: compliances add up).
-    pub area_m2: f64,
+    /// How its sections resist bending, each about its own centre, in the direction that bends most
+    /// easily: least second moment of area, m^4, averaged over the lowest tenth of the height (harmonic
+    /// mean: compliances add up).
+    pub moment_m4: f64,
 }
 
 /// What a union of sections weighs.
@@ -71,11 +73,16 @@ impl Sections {
     /// Makes a section of everything in the layer that faces join to a voxel.
     fn spread(&mut self, grid: &Grid, solid: &[bool], seed: usize, stack: &mut Vec<u32>) {
         let (slab, id) = (grid.slab(), self.sections.len() as u32);
-        let mut section = Section { voxels: 0, above: Vec::new(), below: Vec::new() };
+        let mut section = Section { voxels: 0, sums: [0.0; 5], above: Vec::new(), below: Vec::new() };
         self.of[seed] = id;
         stack.push(seed as u32);
         while let Some(voxel) = stack.pop() {
             section.voxels += 1;
+            let across = voxel as usize % slab;
+            let (x, y) = ((across % grid.size.x as usize) as f64, (across / grid.size.x as usize) as f64);
+            for (sum, term) in section.sums.iter_mut().zip([x, y, x * x, y * y, x * y]) {
+                *sum += term;
+            }
             let over = self.of.get(voxel as usize + slab).copied().unwrap_or(NONE);
             if over != NONE && !section.above.contains(&over) {
                 section.above.push(over);
@@ -104,11 +111,6 @@ impl Sections {
         self.sections.iter().map(|s| f64::from(s.voxels)).sum::<f64>() * self.voxel_m.powi(3)
     }
 
-    /// Area of one section, square metres.
-    pub fn area_m2(&self, section: u32) -> f64 {
-        f64::from(self.sections[section as usize].voxels) * self.voxel_m * self.voxel_m
-    }
-
     /// The section at a point, or in the voxels around it.
     pub fn at(&self, grid: &Grid, point: Vec3) -> Option<u32> {
         let offsets = (0..27).map(|i| Vec3::new((i % 3 - 1) as f32, (i / 3 % 3 - 1) as f32, (i / 9 - 1) as f32));
@@ -118,25 +120,6 @@ impl Sections {
             voxel.cmplt(grid.size).all().then(|| self.of[grid.index(voxel)]).filter(|&s| s != NONE)
         };
         found(point).or_else(|| around.find_map(found))
-    }
-
-    /// Length of the shaft that a section belongs to: layers up and down until it grows thick or ends, metres.
-    pub fn leg_length_m(&self, section: u32) -> f64 {
-        let most = f64::from(self.sections[section as usize].voxels) * LEG_GROWTH;
-        let run = |next: fn(&Section) -> &[u32]| {
-            let (mut layers, mut front) = (0, vec![section]);
-            loop {
-                let mut beyond: Vec<u32> = front.iter().flat_map(|&s| next(&self.sections[s as usize]).iter().copied()).collect();
-                beyond.retain(|&s| f64::from(self.sections[s as usize].voxels) <= most);
-                beyond.sort_unstable();
-                beyond.dedup();
-                if beyond.is_empty() {
-                    return layers;
-                }
-                (layers, front) = (layers + 1, beyond);
-            }
-        };
-        f64::from(1 + run(|s| &s.above) + run(|s| &s.below)) * self.voxel_m
     }
 
     /// The part above each cut, highest cuts first.
@@ -176,9 +159,10 @@ impl Sections {
         let mut layers = 0.0;
         for layer in (layer.saturating_sub(window - 1)..=layer).rev() {
             let held = (self.layers[layer]..self.layers[layer + 1]).filter(|&id| root(parents, id as u32) == group[0].0);
-            let voxels: f64 = held.map(|id| f64::from(self.sections[id].voxels)).sum();
-            if voxels > 0.0 {
-                compliance += 1.0 / voxels;
+            let moments = held.map(|id| self.sections[id].second_moments()).fold([0.0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
+            let least = least_principal(moments);
+            if least > 0.0 {
+                compliance += 1.0 / least;
                 layers += 1.0;
             }
         }
@@ -186,9 +170,24 @@ impl Sections {
             sections: group.iter().map(|&(_, id)| id).collect(),
             volume_m3: part.voxels * self.voxel_m.powi(3),
             height_m: height * self.voxel_m,
-            area_m2: layers / compliance * self.voxel_m * self.voxel_m,
+            moment_m4: layers / compliance * self.voxel_m.powi(4),
         }
     }
+}
+
+impl Section {
+    /// Second moments of area about its own centre, of x x, y y and x y, in voxels.
+    fn second_moments(&self) -> [f64; 3] {
+        let [x, y, xx, yy, xy] = self.sums;
+        let n = f64::from(self.voxels);
+        let own = n / 12.0;
+        [xx - x * x / n + own, yy - y * y / n + own, xy - x * y / n]
+    }
+}
+
+/// The smaller eigenvalue of a symmetric matrix, of its x x, y y and x y.
+fn least_principal([xx, yy, xy]: [f64; 3]) -> f64 {
+    0.5 * (xx + yy) - (0.25 * (xx - yy).powi(2) + xy * xy).sqrt()
 }
 
 /// The last section that a section was united with, paths halved on the way (Tarjan and van Leeuwen 1984).

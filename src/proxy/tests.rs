@@ -292,12 +292,17 @@ fn automatic_stiffness_follows_greenhill() {
     assert!((stiff.value_pa / bound(0.1, 0.5) - 1.0).abs() < 0.2, "{} for {}", stiff.value_pa, bound(0.1, 0.5));
     assert!(stiff.local.iter().all(|&e| e == stiff.value_pa as f32));
     assert!(stiff.warnings.is_empty(), "{:?}", stiff.warnings);
+    // a flat one gives way across: rho g A h^3 / (7.84 I), I = a b^3 / 12
+    let flat = (0..30 * 10 * 50).map(|i| Vec3::new((i % 30) as f32, (i / 30 % 10) as f32, (i / 300) as f32) * 0.01 + Vec3::splat(0.005));
+    let flat = auto(&skin(flat.collect(), 0.004), 1000.0);
+    let across = 4.0 * 1000.0 * 9.81 * 12.0 * 0.5f64.powi(3) / (7.84 * 0.1 * 0.1);
+    assert!((flat.value_pa / across - 1.0).abs() < 0.25, "{} for {across}", flat.value_pa);
     // twice as dense, twice as stiff; stocky and slender stay within the range
     let dense = auto(&column(0.1, 0.5), 2000.0);
     assert!((dense.value_pa / stiff.value_pa - 2.0).abs() < 1e-6);
     assert_eq!(auto(&column(0.3, 0.3), 1000.0).value_pa, 5e4);
     let mast = auto(&column(0.03, 1.0), 1000.0);
-    assert_eq!(mast.value_pa, 1e6);
+    assert_eq!(mast.value_pa, 8e5);
     assert!(!mast.warnings.is_empty());
 }
 
@@ -330,8 +335,8 @@ fn nearest_of_points_that_coincide_is_one_of_them() {
 fn captured_things_come_out_solid_at_draft_and_full() {
     let Some(scenes) = scenes() else { return };
     for (name, core, young) in [
-        ("vase", [Vec3::new(-0.03, 0.0, -0.55), Vec3::new(0.06, 0.15, -0.2)], 1e5..8e5),
-        ("bulldozer", [Vec3::new(-0.6, 0.1, -0.35), Vec3::new(-0.4, 0.2, -0.25)], 5e4..5e5),
+        ("vase", [Vec3::new(-0.03, 0.0, -0.55), Vec3::new(0.06, 0.15, -0.2)], 1e5..=8e5),
+        ("bulldozer", [Vec3::new(-0.6, 0.1, -0.35), Vec3::new(-0.4, 0.2, -0.25)], 1e5..=8e5),
     ] {
         let gaussians = crate::scene::read(&scenes.join(format!("{name}.splat"))).unwrap().gaussians;
         let (low, high) = gaussians.bounds();

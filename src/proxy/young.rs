@@ -1,22 +1,21 @@
 //! `young_pa = "auto"`: soft enough to be seen moving, stiff enough that the captured thing stands.
 //!
-//! A column of height h and radius r stands under its own weight while h^3 <= 7.84 E r^2 / (4 rho g)
-//! (Greenhill 1881). Every horizontal cut leaves parts standing above it ([`sections`]); the part's
-//! cut, taken as one round column, gives its bound, and the object gets [`SAFETY`] times the largest
-//! bound of its major parts. Slender details that need more, a thin shoot or one of several stems
-//! that carry a head together, get it for themselves.
+//! A column of volume V and height h stands under its own weight while V h^2 <= 7.84 E I / (rho g),
+//! which for a round one of radius r is h^3 <= 7.84 E r^2 / (4 rho g) (Greenhill 1881). Every horizontal
+//! cut leaves parts standing above it ([`sections`]); each part's sections, which bend on their own,
+//! give its bound, and the object gets [`SAFETY`] times the largest bound of its major parts. Slender
+//! details that need more, a thin shoot or the stems of a bouquet, get it for themselves.
 
 use super::grid::Grid;
 use super::sections::{Cut, Sections};
 use crate::scene::Gaussians;
-use std::f64::consts::PI;
 
 /// Standard gravity, whatever the spec's is: the object stood on Earth when it was captured.
 const CAPTURE_GRAVITY_M_S2: f64 = 9.81;
 /// How far above the bound: the thing still stands after one "softer".
 const SAFETY: f64 = 4.0;
 /// Softest and stiffest automatic value of a whole object, Pa.
-const RANGE_PA: (f64, f64) = (5e4, 1e6);
+const RANGE_PA: (f64, f64) = (5e4, 8e5);
 /// Stiffest local value, Pa: beyond it a few thin stems would set everyone's time step.
 const LOCAL_MOST_PA: f64 = 2e6;
 /// Share of the solid from which a part is a major one.
@@ -54,12 +53,12 @@ pub(super) fn stance(gaussians: &Gaussians, grid: &Grid, solid: &[bool]) -> Stan
     let mut whole_m = 0.0f64;
     let mut of_section = vec![0.0f64; sections.count()];
     for cut in sections.cuts() {
-        let column = column_m(cut.height_m, cut.area_m2);
+        let column = column_m(&cut);
         if cut.volume_m3 >= MAJOR_SHARE * total_m3 {
             whole_m = whole_m.max(column);
         }
         for &section in &cut.sections {
-            of_section[section as usize] = column.max(legs_m(&cut, &sections, section));
+            of_section[section as usize] = column;
         }
     }
     let local_m = gaussians.mean.iter().map(|&p| sections.at(grid, p).map_or(0.0, |s| of_section[s as usize] as f32)).collect();
@@ -76,19 +75,9 @@ pub fn young_auto(stance: &Stance, density_kg_m3: f64) -> YoungAuto {
     YoungAuto { value_pa, local, warnings: warnings(value_pa, needed_pa), notes: notes(value_pa, &needs) }
 }
 
-/// Greenhill's bound of a round column of this height and cut, with the safety factor, over its weight.
-fn column_m(height_m: f64, area_m2: f64) -> f64 {
-    SAFETY * 4.0 * height_m.powi(3) * PI / (7.84 * area_m2)
-}
-
-/// What one of several legs needs: the part's weight, shared by area, on a leg held at both ends that
-/// may sway (Euler: P = pi^2 E I / l^2 with I = A r^2 / 4), with the safety factor, over the weight.
-fn legs_m(cut: &Cut, sections: &Sections, leg: u32) -> f64 {
-    if cut.sections.len() < 2 {
-        return 0.0;
-    }
-    let radius_squared = sections.area_m2(leg) / PI;
-    SAFETY * cut.volume_m3 / cut.area_m2 * 4.0 * sections.leg_length_m(leg).powi(2) / (PI * PI * radius_squared)
+/// Greenhill's bound of what stands on a cut, with the safety factor, over its weight.
+fn column_m(cut: &Cut) -> f64 {
+    SAFETY * cut.volume_m3 * cut.height_m.powi(2) / (7.84 * cut.moment_m4)
 }
 
 fn warnings(value_pa: f64, needed_pa: f64) -> Vec<String> {

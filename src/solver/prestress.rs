@@ -32,6 +32,7 @@ pub(super) struct Search {
     weight: f32,
     rounds: u32,
     done: u32,
+    released: f32,
 }
 
 /// Share of the weight that nobody sees settle, though the search goes on below it.
@@ -57,8 +58,8 @@ const BASE_SHARE: f32 = 0.03;
 const LEAST_VOLUME: f32 = 0.3;
 /// Nor with a larger entry of F - I.
 const MOST_STRAIN: f32 = 0.6;
-/// Systems in all.
-const SYSTEMS: u32 = 3;
+/// Systems in all: each lets go of the supports that would have to pull, and a wide base has many.
+const SYSTEMS: u32 = 8;
 /// Rounds of conjugate gradients in all systems together.
 const ROUNDS: u32 = 4_000;
 /// Rounds that energy is compared over.
@@ -201,14 +202,17 @@ impl Solver {
             self.keep_matter();
             let gain = self.solve(&mut scene, gained, progress)?;
             gained += gain;
-            let left = residual(&self.adopt(&mut scene)?);
-            // Not even a smaller residual, or none that is a number: the last stress was better.
-            if left.is_nan() || left >= report.residual {
+            let found = self.adopt(&mut scene)?;
+            let left = residual(&found);
+            // Supports that were let go of leave their force to the next system. Else: not even a smaller
+            // residual, or none that is a number, and the last stress was better.
+            let settled = found.released == 0.0;
+            if left.is_nan() || settled && left >= report.residual {
                 self.restore_matter();
                 break;
             }
             report.residual = left;
-            report.converged = gain <= CONVERGED * gained;
+            report.converged = settled && gain <= CONVERGED * gained;
             if report.converged || scene.round > ROUNDS || stop.raised() {
                 break;
             }

@@ -25,6 +25,34 @@ fn a_captured_thing_with_slender_stems_stays_as_it_stands() {
 }
 
 #[test]
+fn supports_that_would_have_to_pull_are_let_go_of() {
+    // A table with a long overhang: the feet on the other side would have to be held down.
+    let inside = |p: Vec3| p.z > 0.2 || (p.x < 0.1 || p.x > 0.25 && p.x < 0.35) && (p.y < 0.1 || p.y > 0.2);
+    let mut particles = block(Vec3::ZERO, Vec3::new(0.7, 0.3, 0.3), 0.025, 3e6, 0.3);
+    let kept: Vec<bool> = particles.position_m.iter().map(|&p| inside(p)).collect();
+    let mut keep = kept.iter();
+    particles.position_m.retain(|_| *keep.next().expect("one each"));
+    let n = particles.position_m.len();
+    particles.velocity_m_s.truncate(n);
+    particles.volume_m3.truncate(n);
+    particles.density_kg_m3.truncate(n);
+    particles.young_pa.truncate(n);
+    particles.poisson.truncate(n);
+    particles.substance.truncate(n);
+    particles.object.truncate(n);
+    let mut settings = Settings::new(0.05);
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.15, restitution: 0.0 });
+    let mut solver = solver(settings, &particles);
+    let stop = Stop::default();
+    let report = solver.prestress(&[0], &stop, &mut |_| {}).expect("a prestress");
+    assert!(report.converged && report.residual < 0.1, "{report:?}");
+    solver.advance(0.2, &stop).expect("an advance");
+    let states = solver.states().expect("states");
+    let moved = states.iter().zip(&particles.position_m).map(|(s, p)| s.position_m.distance(*p)).fold(0.0, f32::max);
+    assert!(moved < 0.0005, "it moved by {moved} m");
+}
+
+#[test]
 fn what_hangs_in_the_air_is_taken_as_free_of_stress() {
     let particles = block(Vec3::new(0.0, 0.0, 0.3), Vec3::splat(0.1), 0.025, 1e5, 0.3);
     let mut settings = Settings::new(0.05);
