@@ -49,7 +49,7 @@ fn surface_normal(c: Collider, face: u32, x: vec3<f32>) -> vec3<f32> {
     }
     if (c.at.w == 2.0) {
         let d = off_axis(c, x);
-        return d * inverseSqrt(max(dot(d, d), 1e-20));
+        return select(vec3<f32>(0.0, 0.0, 1.0), d * inverseSqrt(max(dot(d, d), 1e-20)), dot(d, d) > 1e-20);
     }
     let side = select(1.0, -1.0, face >= 4u);
     let axis = face & 3u;

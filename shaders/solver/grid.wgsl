@@ -35,17 +35,6 @@ fn respond(v: vec3<f32>, mark: u32, x: vec3<f32>) -> vec3<f32> {
     return normal * leaving + sliding * kept;
 }
 
-// How far a wall holds what slides along it: all the way where a liquid's viscosity reaches through a
-// cell soon enough, hardly where it is thin.
-fn held_by(mark: u32, x: vec3<f32>, viscosity_m2_s: f32) -> f32 {
-    if ((mark & SLIPS) == 0u || touch(colliders[(mark & 1023u) >> 3u], x).distance_m > 0.5 * params.cell_m) {
-        return 0.0;
-    }
-    let rate = viscosity_m2_s * params.per_m * params.per_m;
-    let grip = substep.dt_s * WALL_GRIP * rate * (1.0 + rate * WALL_SOON_S);
-    return grip / (1.0 + grip);
-}
-
 fn weigh(node: u32, mass: f32) {
     if (params.layers > 1u) {
         masses[node] = mass;
@@ -73,17 +62,16 @@ fn settle(at: Node) {
     let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
     var v = vec3<f32>(sum.xyz) * (params.mass_units / momentum_unit) / f32(sum.w);
     let x = position_of(at);
-    let wet = liquid_pull(at);
-    v += substep.dt_s * (params.gravity_m_s2 + wet.xyz);
+    v += substep.dt_s * (params.gravity_m_s2 + liquid_pull(at).xyz);
     var held = 0.0;
     var mass = f32(sum.w);
     if (mark.y != 0u) {
-        v = respond(v, mark.y, x);
-        held = max(held, held_by(mark.y, x, wet.w));
+        v = braked(respond(v, mark.y, x), mark.y, x, at);
+        held = max(held, held_by(mark.y, x, at));
     }
     if (mark.x != 0u) {
-        v = respond(v, mark.x, x);
-        held = max(held, held_by(mark.x, x, wet.w));
+        v = braked(respond(v, mark.x, x), mark.x, x, at);
+        held = max(held, held_by(mark.x, x, at));
     }
     if (params.pin_count > 0u) {
         let pin = pinned(x);

@@ -1,6 +1,44 @@
 // Acceleration by surface tension, m/s^2; kinematic viscosity, m^2/s.
 @group(0) @binding(9) var<storage, read> pull: array<vec4<f32>>;
+// Thickness of the liquid that walls brake; the same again where that is a film as a whole, metres.
+@group(0) @binding(10) var<storage, read> film: array<vec2<f32>>;
 
 fn liquid_pull(node: Node) -> vec4<f32> {
     return pull[stored(vec3<u32>(node.cell), 0u)];
+}
+
+// Whether a wall brakes the liquid of a node: along one without friction any liquid slips.
+fn wets(mark: u32, x: vec3<f32>, node: u32) -> bool {
+    let c = colliders[(mark & 1023u) >> 3u];
+    let near = film[node].y > 0.0 || touch(c, x).distance_m <= 0.5 * params.cell_m;
+    return near && (mark & SLIPS) != 0u && c.surface.x > 0.0;
+}
+
+// What a wall's friction leaves of a liquid's velocity: rough turbulent flow is braked by f / 8 rho v^2
+// (Darcy and Weisbach), a film that is too thin for the grid by 3 mu v / h besides (Nusselt 1916).
+// By backward Euler, which can but brake.
+fn braked(v: vec3<f32>, mark: u32, x: vec3<f32>, at: Node) -> vec3<f32> {
+    let node = stored(vec3<u32>(at.cell), 0u);
+    if (!wets(mark, x, node)) {
+        return v;
+    }
+    let normal = surface_normal(colliders[(mark & 1023u) >> 3u], mark & 7u, x);
+    let across = normal * dot(v, normal);
+    let sliding = v - across;
+    let thick_m = max(film[node].x, FILM_LEAST * params.cell_m);
+    let laminar = select(0.0, 3.0 * pull[node].w / thick_m, film[node].y > 0.0);
+    let rate = (laminar + WALL_FRICTION * length(sliding)) / thick_m;
+    return across + sliding / (1.0 + substep.dt_s * rate);
+}
+
+// How far a wall holds what slides along it: all the way where a liquid's viscosity reaches through a
+// cell soon enough, hardly where it is thin, nor where it is a film that brakes as a whole.
+fn held_by(mark: u32, x: vec3<f32>, at: Node) -> f32 {
+    let node = stored(vec3<u32>(at.cell), 0u);
+    if (!wets(mark, x, node) || film[node].y > 0.0) {
+        return 0.0;
+    }
+    let rate = pull[node].w * params.per_m * params.per_m;
+    let grip = substep.dt_s * WALL_GRIP * rate * (1.0 + rate * WALL_SOON_S);
+    return grip / (1.0 + grip);
 }

@@ -7,18 +7,10 @@
 @group(0) @binding(2) var<storage, read> colliders: array<Collider>;
 @group(0) @binding(3) var<storage, read_write> fill: array<i32>;
 // Rest volume over room, negative where there is no room; surface tension over density, m^3/s^2;
-// kinematic viscosity, m^2/s; 1 in active blocks.
+// kinematic viscosity, m^2/s; in active blocks 1 and the rest volume in volumes of a cell.
 @group(0) @binding(4) var<storage, read_write> share: array<vec4<f32>>;
 // Acceleration by surface tension, m/s^2; kinematic viscosity, m^2/s.
 @group(0) @binding(5) var<storage, read_write> pull: array<vec4<f32>>;
-
-// Integral of the quadratic B-spline from minus infinity to t cells.
-fn spline_before(t: f32) -> f32 {
-    let a = abs(t);
-    let far = max(1.5 - a, 0.0);
-    let beyond = select(far * far * far * (1.0 / 6.0), 0.5 - a * (0.75 - a * a * (1.0 / 3.0)), a < 0.5);
-    return select(beyond, 1.0 - beyond, t > 0.0);
-}
 
 @compute @workgroup_size(64)
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
@@ -36,14 +28,11 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     fill[k + 1u] = 0;
     fill[k + 2u] = 0;
     let x = position_of(node);
-    var room = 1.0;
-    for (var c = 0u; c < params.collider_count; c++) {
-        room *= spline_before(touch(colliders[c], x).distance_m * params.per_m);
-    }
+    let room = room_beside(x, params.collider_count);
     let full = poured.x / FILL_UNITS;
     let of_liquid = select(0.0, 1.0 / full, poured.x > 0.0);
     let tension = poured.y * of_liquid / max(params.tension_units, 1e-30);
     let viscosity = poured.z * of_liquid / max(params.viscosity_units, 1e-30);
-    share[node.index] = vec4<f32>(select(-1.0, full / room, room > ROOM_LEAST), tension, viscosity, 1.0);
+    share[node.index] = vec4<f32>(select(-1.0, full / room, room > ROOM_LEAST), tension, viscosity, 1.0 + full);
     pull[node.index] = vec4<f32>(0.0, 0.0, 0.0, viscosity);
 }

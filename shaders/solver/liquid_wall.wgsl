@@ -7,16 +7,6 @@
 @group(0) @binding(2) var<storage, read> colliders: array<Collider>;
 @group(0) @binding(3) var<storage, read_write> velocity: array<vec4<f32>>;
 
-// Whether a node is farther than half a cell from all walls: no such node is changed here.
-fn clear_of_walls(x: vec3<f32>) -> bool {
-    for (var c = 0u; c < params.collider_count; c++) {
-        if (touch(colliders[c], x).distance_m <= 0.5 * params.cell_m) {
-            return false;
-        }
-    }
-    return true;
-}
-
 @compute @workgroup_size(64)
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
     let place = group.y * GROUPS_ACROSS + group.x;
@@ -32,26 +22,15 @@ fn hold(node: Node) {
         return;
     }
     let x = position_of(node);
-    var wall = 0u;
-    var nearest = Touch(1e30, 0u);
-    for (var c = 0u; c < params.collider_count; c++) {
-        let t = touch(colliders[c], x);
-        if (abs(t.distance_m) < abs(nearest.distance_m)) {
-            wall = c;
-            nearest = t;
-        }
-    }
-    let normal = surface_normal(colliders[wall], nearest.face, x);
-    let size = abs(normal);
-    let most = max(size.x, max(size.y, size.z));
-    let inward = vec3<i32>(select(vec3<f32>(0.0), sign(normal), size == vec3<f32>(most)));
+    let wall = nearest_wall(x);
+    let normal = wall.normal;
     var on_line = vec3<f32>(0.0);
     for (var k = 1; k <= 3; k++) {
-        let other = Node(0u, node.cell + inward * k, node.layer);
+        let other = Node(0u, node.cell + wall.outward * k, node.layer);
         let at = position_of(other);
         if (clear_of_walls(at)) {
-            let share = nearest.distance_m / touch(colliders[wall], at).distance_m;
-            on_line = velocity[beside(node, inward * k)].xyz * clamp(share, -2.0, 1.0);
+            let share = wall.distance_m / touch(colliders[wall.collider], at).distance_m;
+            on_line = velocity[beside(node, wall.outward * k)].xyz * clamp(share, -2.0, 1.0);
             break;
         }
     }

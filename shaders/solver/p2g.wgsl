@@ -78,6 +78,20 @@ fn behind_by(sum: vec4<f32>, step: u32, behind: u32) -> vec4<f32> {
     return sum + select(vec4<f32>(0.0), before, behind >= step);
 }
 
+// Only the nodes beside and below the particle carry its contact: those above it are the body's own, and
+// the layer that they would stiffen is half a cell thinner without them. Those above a liquid are told that
+// it is there: a mark from out of reach stops nothing.
+fn leave_mark(slot: u32, near: Near, d: vec3<f32>) {
+    if (near.mark == 0u) {
+        return;
+    }
+    if (dot(near.normal, d) <= 0.5) {
+        atomicMax(&marks[slot], near.mark);
+    } else if ((near.mark & SLIPS) != 0u) {
+        atomicMax(&marks[slot], pack_mark(params.reach_m, near.mark & 2047u));
+    }
+}
+
 // Adds what the particle gives to one node, `d` cells away; the widest sum that it rounded.
 fn deposit(l: Lane, node: u32, weight: f32, d: vec3<f32>, number: u32) -> f32 {
     var sum = vec4<f32>(l.pull + l.spread * d, l.mass_units) * weight;
@@ -99,14 +113,8 @@ fn deposit(l: Lane, node: u32, weight: f32, d: vec3<f32>, number: u32) -> f32 {
         atomicAdd(&sums[4u * node + 3u], whole.w);
         widest = max(max(abs(sum.x), abs(sum.y)), max(abs(sum.z), sum.w));
     }
-    // Only the nodes beside and below the particle carry its contact: those above it are the body's
-    // own, and the layer that they would stiffen is half a cell thinner without them.
-    if (l.ground.mark != 0u && dot(l.ground.normal, d) <= 0.5) {
-        atomicMax(&marks[2u * node], l.ground.mark);
-    }
-    if (l.solid.mark != 0u && dot(l.solid.normal, d) <= 0.5) {
-        atomicMax(&marks[2u * node + 1u], l.solid.mark);
-    }
+    leave_mark(2u * node, l.ground, d);
+    leave_mark(2u * node + 1u, l.solid, d);
     return widest;
 }
 

@@ -435,7 +435,7 @@ impl Solver {
         let g2p = [params, kinematics, matter, &grid.velocity, around.0, around.1, control, &laws.table, &laws.activations, laws.shown()];
         let mut on_grid =
             vec![params, &grid.active_blocks, around.0, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, control, &grid.masses];
-        on_grid.extend(grid.liquid.as_ref().map(|l| &l.pull));
+        on_grid.extend(grid.liquid.iter().flat_map(|l| [&l.pull, &l.film]));
         Bound {
             rigid: self.rigid.as_ref().map(|r| r.bind(self, grid, current)),
             active_groups: grid.active_groups.clone(),

@@ -144,6 +144,14 @@ pub const SURFACE_LEAST: f32 = 0.02;
 pub const WALL_GRIP: f32 = 50.0;
 /// See [`WALL_GRIP`], seconds.
 pub const WALL_SOON_S: f32 = 0.1;
+/// f / 8 of Darcy's and Weisbach's friction, tau = f / 8 rho v^2: f = 0.03 is that of rough turbulent flow where
+/// the roughness is some hundredth of the depth (Moody 1944).
+pub const WALL_FRICTION: f32 = 0.03 / 8.0;
+/// Films brake as if no thinner, cells: a drop alone on its wall.
+pub const FILM_LEAST: f32 = 0.01;
+/// The grid resolves how a liquid shears on a wall where the first node clear of it is this full, as a share of the
+/// fullest that the wall brakes.
+pub const FILM_RESOLVED: f32 = 0.6;
 /// Time in which the Gaussians of a liquid go back to their captured shape, seconds.
 pub const LIQUID_SHOWN_S: f32 = 0.25;
 /// Rigid bodies of one scene, at most.
@@ -252,6 +260,9 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("SURFACE_LEAST", Constant::F32(SURFACE_LEAST)),
         ("WALL_GRIP", Constant::F32(WALL_GRIP)),
         ("WALL_SOON_S", Constant::F32(WALL_SOON_S)),
+        ("WALL_FRICTION", Constant::F32(WALL_FRICTION)),
+        ("FILM_LEAST", Constant::F32(FILM_LEAST)),
+        ("FILM_RESOLVED", Constant::F32(FILM_RESOLVED)),
         ("LIQUID_SHOWN_S", Constant::F32(LIQUID_SHOWN_S)),
         ("SPH_LIQUID", Constant::U32(SPH_LIQUID)),
         ("SPH_SLOTS", Constant::U32(SPH_SLOTS)),

@@ -15,10 +15,11 @@ use crate::gpu::{Gpu, Recording};
 passes! {
     /// Passes that only scenes with a liquid have; `grid_wet` takes the place of `grid`.
     LiquidPasses;
-    grid_wet: ["control", "substep", "contact", "node", "pin", "grid_wet", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Read] SUBSTEP;
-    liquid_wall: ["contact", "node", "liquid_wall"] [Read, Read, Read, Write] 0;
+    grid_wet: ["control", "substep", "contact", "node", "pin", "grid_wet", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Read, Read] SUBSTEP;
+    liquid_wall: ["contact", "node", "wall", "liquid_wall"] [Read, Read, Read, Write] 0;
     liquid_fill: ["substance", "particle", "liquid_fill"] [Read, Read, Read, Read, Write] 0;
-    liquid_share: ["contact", "node", "liquid_share"] [Read, Read, Read, Write, Write, Write] 0;
+    liquid_share: ["contact", "node", "room", "liquid_share"] [Read, Read, Read, Write, Write, Write] 0;
+    liquid_film: ["contact", "node", "wall", "room", "liquid_film"] [Read, Read, Read, Read, Write] 0;
     liquid_density: ["substep", "substance", "material", "particle", "cube_root", "liquid_density"] [Read, Read, Write, Read, Read] SUBSTEP;
     liquid_slope: ["node", "liquid_slope"] [Read, Read, Read, Write] 0;
     liquid_tension: ["node", "liquid_tension"] [Read, Read, Read, Read, Write] 0;
@@ -31,11 +32,12 @@ pub(super) struct LiquidFields {
     pub share: wgpu::Buffer,
     pub slopes: wgpu::Buffer,
     pub pull: wgpu::Buffer,
+    pub film: wgpu::Buffer,
 }
 
 impl LiquidFields {
     /// Bytes of all of them for one node.
-    pub const NODE_BYTES: u64 = 60;
+    pub const NODE_BYTES: u64 = 68;
 
     pub fn new(gpu: &Gpu, nodes: usize) -> Result<LiquidFields, SolverError> {
         Ok(LiquidFields {
@@ -43,6 +45,7 @@ impl LiquidFields {
             share: gpu.storage::<[f32; 4]>("solver.share", nodes)?,
             slopes: gpu.storage::<[f32; 4]>("solver.slopes", nodes)?,
             pull: gpu.storage::<[f32; 4]>("solver.pull", nodes)?,
+            film: gpu.storage::<[f32; 2]>("solver.film", nodes)?,
         })
     }
 }
@@ -51,6 +54,7 @@ impl LiquidFields {
 pub(super) struct LiquidBound {
     pub fill: wgpu::BindGroup,
     pub share: wgpu::BindGroup,
+    pub film: wgpu::BindGroup,
     pub density: wgpu::BindGroup,
     pub slope: wgpu::BindGroup,
     pub tension: wgpu::BindGroup,
@@ -91,6 +95,7 @@ impl Solver {
         Some(LiquidBound {
             fill: gpu.bind(&p.liquid_fill, &[params, kinematics, matter, table, &fields.fill]),
             share: gpu.bind(&p.liquid_share, &[params, blocks, &self.colliders_buffer, &fields.fill, &fields.share, &fields.pull]),
+            film: gpu.bind(&p.liquid_film, &[params, blocks, &self.colliders_buffer, &fields.share, &fields.film]),
             density: gpu.bind(&p.liquid_density, &[params, kinematics, matter, table, &fields.share]),
             wall: gpu.bind(&p.liquid_wall, &[params, blocks, &self.colliders_buffer, &grid.velocity]),
             slope: gpu.bind(&p.liquid_slope, &[params, blocks, &fields.share, &fields.slopes]),
@@ -104,6 +109,9 @@ impl Solver {
         let groups = self.particle_groups();
         recording.dispatch(&p.liquid_fill, &b.fill, groups);
         recording.indirect(&p.liquid_share, &b.share, active_groups, 0);
+        if self.params.collider_count > 0 {
+            recording.indirect(&p.liquid_film, &b.film, active_groups, 0);
+        }
         let span = Substep { dt_s: span_s, dt_next_s: 0.0, index: self.substep, job: 0, since_s: 0.0 };
         recording.dispatch_with(&p.liquid_density, &b.density, &span, groups);
         if self.params.tension_units > 0.0 {

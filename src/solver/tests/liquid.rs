@@ -51,6 +51,7 @@ fn density_tension_and_walls_follow_the_twins() {
     let (stored, nodes) = (Stored::of(&solver), node_count(&solver));
     let share: Vec<[f32; 4]> = gpu().read(&on_grid.share, nodes).expect("share");
     let pull: Vec<[f32; 4]> = gpu().read(&on_grid.pull, nodes).expect("pull");
+    let film: Vec<[f32; 2]> = gpu().read(&on_grid.film, nodes).expect("film");
     let left: Vec<[i32; 3]> = gpu().read(&on_grid.fill, nodes).expect("fill");
     assert!(left.iter().all(|f| *f == [0; 3]), "the fill is left for the next time");
     let strongest = fields.pool.keys().map(|&n| fields.pull(n).length()).fold(0.0, f64::max);
@@ -77,6 +78,17 @@ fn density_tension_and_walls_follow_the_twins() {
     assert!(compared > 200 && walls > 50 && astray * 100 <= compared, "{astray} of {compared} astray, {walls} behind walls");
     assert!(strongest > 1.0);
 
+    let (mut deep, mut thin) = (0, 0);
+    for &node in fields.pool.keys() {
+        let want = fields.film_m(node);
+        let got = film[stored.node(&node, 0)].map(f64::from);
+        deep += usize::from(want[0] > want[1]);
+        thin += usize::from(want[1] > 0.0);
+        let apart = got.iter().zip(want).map(|(g, w)| (g - w).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-3 * want[0].max(f64::from(CELL_M)), "film at {node:?}: {got:?} m, {want:?} by the twin");
+    }
+    assert!(deep > 50 && thin > 20, "{deep} nodes in deep liquid, {thin} in films");
+
     let mut moved = 0;
     for (got, s) in solver.states().expect("states").iter().zip(&states).filter(|(_, s)| s.f().determinant() > 0.3) {
         let (got, want) = (f64::from(got.f().determinant()), fields.density(s, f64::from(SPAN_S)));
@@ -95,7 +107,7 @@ fn density_tension_and_walls_follow_the_twins() {
     run(|r| r.indirect_with(&passes.grid, &b.grid, &SUBSTEP, &grid.active_groups, 0));
     for (node, value) in want.iter_mut() {
         let [x, y, z, viscosity] = pull[stored.node(node, 0)];
-        (value.pull_m_s2, value.viscosity_m2_s) = (Vec3::new(x, y, z), viscosity);
+        (value.pull_m_s2, value.viscosity_m2_s, value.film_m) = (Vec3::new(x, y, z), viscosity, film[stored.node(node, 0)]);
     }
     twin::grid(&mut want, &around, DT_S, SUBSTEP.since_s);
     let velocity: Vec<[f32; 4]> = gpu().read(&grid.velocity, nodes).expect("velocity");

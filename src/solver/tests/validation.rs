@@ -49,6 +49,7 @@ quick_cases! {
     v17_snow: "V17";
     a_muscle_shortens: "muscle";
     v18_dam_break: "V18";
+    films_on_walls: "film";
     v19_hydrostatic: "V19";
     v20_viscous: "V20";
     v22_laplace: "V22";

@@ -1,7 +1,8 @@
 //! `liquid_*.wgsl`: what is poured on the nodes and what follows from it, by sums over all nodes.
 
 use super::{Grid, Surroundings, stencil};
-use crate::solver::constants::{CALM, FULL, ROOM_LEAST, SURFACE_LEAST};
+use crate::solver::constants::{CALM, FILM_RESOLVED, FULL, ROOM_LEAST, SURFACE_LEAST};
+use crate::solver::obstacles::ColliderRecord;
 use crate::solver::state::ParticleState;
 use crate::solver::substance::Substance;
 use glam::{DVec3, Vec3};
@@ -69,11 +70,15 @@ impl<'a> Fields<'a> {
         fields
     }
 
+    /// Share of a node's spline on the free side of all walls, or of all but one.
+    fn room(&self, node: [i32; 3], but: Option<&ColliderRecord>) -> f64 {
+        let walls = self.around.colliders.iter().filter(|c| but.is_none_or(|but| !std::ptr::eq(*c, but)));
+        walls.map(|c| spline_before(f64::from(c.touch(place(node, self.around)).distance_m * self.around.params.per_m))).product()
+    }
+
     /// `liquid_share.wgsl`.
     fn fullness(&self, node: [i32; 3]) -> Option<f64> {
-        let params = &self.around.params;
-        let x = Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * params.cell_m;
-        let room: f64 = self.around.colliders.iter().map(|c| spline_before(f64::from(c.touch(x).distance_m * params.per_m))).product();
+        let room = self.room(node, None);
         (room > f64::from(ROOM_LEAST)).then(|| self.pool.get(&node).map_or(0.0, |n| n.volume) / room)
     }
 
@@ -147,19 +152,52 @@ fn differences(of: impl Fn([i32; 3]) -> DVec3) -> [DVec3; 3] {
     sums
 }
 
+/// The walls that hold liquid.
+fn rough<'a>(around: &'a Surroundings) -> impl Iterator<Item = &'a ColliderRecord> {
+    around.colliders.iter().filter(|c| c.surface[0] > 0.0)
+}
+
+/// A node's nearest wall, its normal, and the step away from it along the lattice.
+fn beside_wall<'a>(node: [i32; 3], around: &'a Surroundings) -> (&'a ColliderRecord, Vec3, [i32; 3]) {
+    let x = place(node, around);
+    let wall = rough(around).min_by(|a, b| a.touch(x).distance_m.abs().total_cmp(&b.touch(x).distance_m.abs())).expect("a wall");
+    let normal = wall.normal(wall.touch(x).face, x);
+    (wall, normal, normal.to_array().map(|n| if n.abs() == normal.abs().max_element() { n.signum() as i32 } else { 0 }))
+}
+
+fn place(node: [i32; 3], around: &Surroundings) -> Vec3 {
+    Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * around.params.cell_m
+}
+
+impl Fields<'_> {
+    /// `liquid_film.wgsl`: metres of liquid that the wall brakes, and again where that is a film.
+    pub fn film_m(&self, node: [i32; 3]) -> [f64; 2] {
+        let cell_m = self.around.params.cell_m;
+        let (wall, _, away) = beside_wall(node, self.around);
+        let distance_m = |n: [i32; 3]| wall.touch(place(n, self.around)).distance_m;
+        if distance_m(node) > 1.5 * cell_m {
+            return [0.0; 2];
+        }
+        let column = || (-3..=3).map(|k| step(node, away.map(|a| a * k)));
+        let across_m = f64::from(cell_m) / self.room(node, Some(wall)).max(f64::from(ROOM_LEAST));
+        let poured = |n: [i32; 3]| self.pool.get(&n).map_or(0.0, |p| p.volume) * across_m;
+        let full = |n: [i32; 3]| self.full(n).unwrap_or(-1.0);
+        let at_wall = || column().filter(|&n| distance_m(n) <= 0.5 * cell_m);
+        let clear = column().find(|&n| distance_m(n) > 0.5 * cell_m).map_or(0.0, full);
+        let thin = clear < f64::from(FILM_RESOLVED) * at_wall().map(full).fold(0.0, f64::max);
+        let braked = |of: f64| [of, if thin { of } else { 0.0 }];
+        if thin { braked(column().map(poured).sum()) } else { braked(at_wall().map(poured).sum()) }
+    }
+}
+
 /// `liquid_wall.wgsl`: the velocity of a node, from those that the grid's pass left.
 pub fn wall(grid: &Grid, node: [i32; 3], around: &Surroundings) -> Vec3 {
     let cell_m = around.params.cell_m;
-    let place = |n: [i32; 3]| Vec3::new(n[2] as f32, n[1] as f32, n[0] as f32) * cell_m;
-    let (x, value) = (place(node), &grid[&node]);
-    let wall = around.colliders.iter().min_by(|a, b| a.touch(x).distance_m.abs().total_cmp(&b.touch(x).distance_m.abs())).expect("a wall");
-    let here = wall.touch(x);
-    let normal = wall.normal(here.face, x);
-    let inward = normal.to_array().map(|n| if n.abs() == normal.abs().max_element() { n.signum() as i32 } else { 0 });
-    let away = |k: i32| step(node, inward.map(|i| i * k));
-    let is_clear = |n: &[i32; 3]| around.colliders.iter().all(|c| c.touch(place(*n)).distance_m > 0.5 * cell_m);
-    let on_line = (1..=3).map(away).find(is_clear).map_or(Vec3::ZERO, |clear| {
-        let share = here.distance_m / wall.touch(place(clear)).distance_m;
+    let (wall, normal, away) = beside_wall(node, around);
+    let (here, value) = (wall.touch(place(node, around)), &grid[&node]);
+    let is_clear = |n: &[i32; 3]| rough(around).all(|c| c.touch(place(*n, around)).distance_m > 0.5 * cell_m);
+    let on_line = (1..=3).map(|k| step(node, away.map(|a| a * k))).find(is_clear).map_or(Vec3::ZERO, |clear| {
+        let share = here.distance_m / wall.touch(place(clear, around)).distance_m;
         grid.get(&clear).map_or(Vec3::ZERO, |n| n.velocity) * share.clamp(-2.0, 1.0)
     });
     let along = |v: Vec3| v - normal * v.dot(normal);

@@ -8,7 +8,7 @@ pub mod prestress;
 pub mod sort;
 pub mod sph;
 
-use super::constants::{F_MOST, GAP_STEPS, REST_CELLS_MAX, SLIPS, WALL_GRIP, WALL_SOON_S};
+use super::constants::{F_MOST, FILM_LEAST, GAP_STEPS, REST_CELLS_MAX, SLIPS, WALL_FRICTION, WALL_GRIP, WALL_SOON_S};
 use super::core::Params;
 use super::obstacles::{ColliderRecord, PinRecord};
 use super::state::ParticleState;
@@ -28,6 +28,8 @@ pub struct Node {
     pub pull_m_s2: Vec3,
     /// Kinematic, of liquid.
     pub viscosity_m2_s: f32,
+    /// Thickness of the liquid that walls brake; the same again where that is a film as a whole.
+    pub film_m: [f32; 2],
     /// How far walls hold it, 0 to 1.
     pub held: f32,
 }
@@ -100,8 +102,11 @@ pub fn p2g(states: &[ParticleState], around: &Surroundings) -> Grid {
             node.momentum += (s.velocity_m_s.as_dvec3() * f64::from(s.mass_kg) + a * d.as_dvec3()) * weight;
             node.mass += f64::from(s.mass_kg) * weight;
             for (mark, found) in node.marks.iter_mut().zip(found) {
-                if let Some((value, _)) = found.filter(|(_, normal)| normal.dot(d) <= 0.5) {
+                let Some((value, normal)) = found else { continue };
+                if normal.dot(d) <= 0.5 {
                     *mark = (*mark).max(value);
+                } else if value & SLIPS != 0 {
+                    *mark = (*mark).max(1 << 11 | (value & 2047));
                 }
             }
         }
@@ -140,8 +145,8 @@ pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32, since_s: f32) {
         let mut v = (value.momentum / value.mass).as_vec3() + (Vec3::from(around.params.gravity_m_s2) + value.pull_m_s2) * dt_s;
         for mark in [value.marks[1], value.marks[0]] {
             if mark != 0 {
-                v = respond(v, mark, x, around, dt_s);
-                value.held = value.held.max(held_by(mark, x, around, dt_s, value.viscosity_m2_s));
+                v = braked(respond(v, mark, x, around, dt_s), mark, x, around, dt_s, value);
+                value.held = value.held.max(held_by(mark, x, around, dt_s, value));
             }
         }
         if let Some(pin) = around.pins.iter().find(|pin| pinned(pin, x, since_s)) {
@@ -174,12 +179,32 @@ fn respond(v: Vec3, mark: u32, x: Vec3, around: &Surroundings, dt_s: f32) -> Vec
     normal * leaving + if speed > grip { sliding * (1.0 - grip / speed) } else { Vec3::ZERO }
 }
 
+/// Whether a wall brakes the liquid of a node.
+fn wets(mark: u32, x: Vec3, around: &Surroundings, node: &Node) -> bool {
+    let collider = &around.colliders[(mark & 1023) as usize >> 3];
+    let near = node.film_m[1] > 0.0 || collider.touch(x).distance_m <= 0.5 * around.params.cell_m;
+    near && mark & SLIPS != 0 && collider.surface[0] > 0.0
+}
+
+/// What a wall's friction leaves of a liquid's velocity.
+fn braked(v: Vec3, mark: u32, x: Vec3, around: &Surroundings, dt_s: f32, node: &Node) -> Vec3 {
+    let collider = &around.colliders[(mark & 1023) as usize >> 3];
+    if !wets(mark, x, around, node) {
+        return v;
+    }
+    let normal = collider.normal(mark & 7, x);
+    let sliding = v - normal * v.dot(normal);
+    let thick_m = node.film_m[0].max(FILM_LEAST * around.params.cell_m);
+    let laminar_m_s = if node.film_m[1] > 0.0 { 3.0 * node.viscosity_m2_s / thick_m } else { 0.0 };
+    let rate = (laminar_m_s + WALL_FRICTION * sliding.length()) / thick_m;
+    v - sliding * (dt_s * rate / (1.0 + dt_s * rate))
+}
+
 /// How far a wall holds what slides along it.
-fn held_by(mark: u32, x: Vec3, around: &Surroundings, dt_s: f32, viscosity_m2_s: f32) -> f32 {
-    let distance_m = around.colliders[(mark & 1023) as usize >> 3].touch(x).distance_m;
-    let rate = viscosity_m2_s * around.params.per_m.powi(2);
+fn held_by(mark: u32, x: Vec3, around: &Surroundings, dt_s: f32, node: &Node) -> f32 {
+    let rate = node.viscosity_m2_s * around.params.per_m.powi(2);
     let grip = dt_s * WALL_GRIP * rate * (1.0 + rate * WALL_SOON_S);
-    if mark & SLIPS == 0 || distance_m > 0.5 * around.params.cell_m { 0.0 } else { grip / (1.0 + grip) }
+    if !wets(mark, x, around, node) || node.film_m[1] > 0.0 { 0.0 } else { grip / (1.0 + grip) }
 }
 
 /// Velocity and its gradient at a particle.

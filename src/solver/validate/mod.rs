@@ -3,6 +3,7 @@
 mod bodies;
 mod captured;
 mod driven;
+mod films;
 mod flakes;
 mod free;
 mod grains;
@@ -134,6 +135,7 @@ pub const CASES: &[Case] = &[
     Case { name: "V17", quick: true, run: flakes::packs },
     Case { name: "muscle", quick: true, run: muscles::shortens },
     Case { name: "V18", quick: true, run: liquid_flow::dam_break },
+    Case { name: "film", quick: true, run: films::brake },
     Case { name: "V19", quick: true, run: liquid_rest::hydrostatic },
     Case { name: "V19 sloshing", quick: false, run: liquid_rest::sloshing },
     Case { name: "V20", quick: true, run: liquid_flow::viscous },
