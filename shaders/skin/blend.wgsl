@@ -17,6 +17,12 @@ var<immediate> params: Immediates;
 @group(0) @binding(3) var<storage, read> delta: array<Delta>;
 @group(0) @binding(4) var<storage, read> rest: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> geometry: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> sheds: array<f32>;
+/// How far each moving Gaussian has lost its shape, 0 to 1; below 0 where it keeps it whatever happens.
+@group(0) @binding(7) var<storage, read_write> loose: array<f32>;
+
+/// Share of a Gaussian's weight whose particles went elsewhere.
+var<private> left: f32 = 0.0;
 
 fn weighed(sum: Delta, i: u32, w: f32) -> Delta {
     let d = delta[i];
@@ -57,6 +63,7 @@ fn together(slot: u32, whole: Delta, centre: vec3<f32>) -> Delta {
         sum = weighed(sum, i.z, w.z);
         sum = weighed(sum, i.w, w.w);
     }
+    left = 1.0 - total;
     return Delta(sum.x / total, sum.y / total, sum.z / total);
 }
 
@@ -109,6 +116,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     let at = moving[slot] * 4u;
     let centre = rest[at];
     let d = blended(slot, centre.xyz - params.origin);
+    loose[slot] = select(-1.0, smoothstep(LEFT_LOW, LEFT_HIGH, left), !PAPER && sheds[particle[slot * VECTORS].x] > 0.5);
     var a = rest[at + 1u];
     var b = rest[at + 2u];
     var turn = rest[at + 3u];

@@ -7,11 +7,13 @@ struct Immediates {
 }
 var<immediate> params: Immediates;
 
-/// (x, y, z, G - I as nine halves and a spare), 32 bytes.
+/// (x, y, z, G - I as nine halves, 1 where shapes are lost), 32 bytes.
 @group(0) @binding(0) var<storage, read> motion: array<array<vec4<u32>, 2>>;
 /// Captured positions, relative to the origin.
 @group(0) @binding(1) var<storage, read> rest_particle: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read_write> delta: array<Delta>;
+/// 1 where matter keeps no shape, else 0.
+@group(0) @binding(3) var<storage, read_write> sheds: array<f32>;
 
 @compute @workgroup_size(GROUP_SIZE)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
@@ -38,5 +40,6 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     if !PAPER {
         t -= vec3(dot(row_x, p0), dot(row_y, p0), dot(row_z, p0));
     }
+    sheds[i] = h4.y;
     delta[i] = Delta(vec4(row_x, t.x), vec4(row_y, t.y), vec4(row_z, t.z));
 }

@@ -2,10 +2,11 @@
 //!
 //! [`bind`] picks the particles each Gaussian follows, once, in the captured pose. A [`Skinner`]
 //! then turns the motion of the particles into the geometry of the Gaussians, frame by frame, on
-//! the device. [`twin`] is the same in plain Rust.
+//! the device; what has lost its shape takes one from how densely the Gaussians lie. [`twin`] is the same in plain Rust.
 
 mod bench;
 mod bind;
+mod cover;
 mod neighbours;
 mod skinner;
 mod splats;

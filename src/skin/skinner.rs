@@ -1,5 +1,6 @@
 //! The two passes that move Gaussians with their particles.
 
+use super::cover::{self, Cover};
 use super::{Bound, STATIC, Splats};
 use crate::gpu::{Access, Constant, Gpu, GpuError, Kernel, KernelSource, Recording};
 use crate::spec::Weights;
@@ -7,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Version of what skinning computes; part of the keys of pictures.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Threads of a workgroup.
 const GROUP_SIZE: u32 = 128;
@@ -33,9 +34,9 @@ pub const JACOBI_SWEEPS: u32 = 4;
 /// What both passes receive.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Immediates {
-    origin: [f32; 3],
-    count: u32,
+pub(super) struct Immediates {
+    pub origin: [f32; 3],
+    pub count: u32,
     span_m: f32,
     padding: [u32; 3],
 }
@@ -49,6 +50,10 @@ pub struct Skinner {
     blend_bindings: wgpu::BindGroup,
     rest_particles: wgpu::Buffer,
     deltas: wgpu::Buffer,
+    sheds: wgpu::Buffer,
+    loose: wgpu::Buffer,
+    moving: wgpu::Buffer,
+    cover: Option<Cover>,
     particles: Immediates,
     gaussians: Immediates,
 }
@@ -66,17 +71,32 @@ impl Skinner {
         let moving = gpu.storage_from("skin.moving", &packed.moving)?;
         let index = gpu.storage_from("skin.particle", &packed.index)?;
         let weight = gpu.storage_from("skin.weight", &packed.weight)?;
-        let buffers = [&moving, &index, &weight, &deltas, &splats.rest, &splats.geometry];
+        let sheds = gpu.storage::<f32>("skin.sheds", rest_particles.len())?;
+        let loose = gpu.storage::<f32>("skin.loose", packed.moving.len())?;
+        let buffers = [&moving, &index, &weight, &deltas, &splats.rest, &splats.geometry, &sheds, &loose];
         Ok(Skinner {
             delta: gpu.kernel(&delta_source(weights)),
             blend_bindings: gpu.bind(&blend, &buffers),
             blend,
             rest_particles: gpu.storage_from("skin.rest_particles", &relative)?,
             deltas,
+            sheds,
+            loose,
+            moving,
+            cover: None,
             particles: Immediates { count: rest_particles.len() as u32, ..shared },
             gaussians: Immediates { count: packed.moving.len() as u32, ..shared },
             gpu: gpu.clone(),
         })
+    }
+
+    /// Readies it for matter that keeps no shape, liquids and grains, of which the motion tells. Without this
+    /// Gaussians of such matter go on as their particles turn and stretch.
+    pub fn shed(&mut self, splats: &Splats) -> Result<(), GpuError> {
+        if self.cover.is_none() && self.gaussians.count > 0 && self.particles.count > 0 {
+            self.cover = Some(Cover::new(&self.gpu, splats, &self.moving, &self.loose, &self.gaussians)?);
+        }
+        Ok(())
     }
 
     /// Records the passes that read `motion` (8 u32 a particle, see the solver) and write `Splats::geometry`
@@ -85,9 +105,12 @@ impl Skinner {
         if self.gaussians.count == 0 || self.particles.count == 0 {
             return;
         }
-        let bindings = self.gpu.bind(&self.delta, &[motion, &self.rest_particles, &self.deltas]);
+        let bindings = self.gpu.bind(&self.delta, &[motion, &self.rest_particles, &self.deltas, &self.sheds]);
         recording.dispatch_with(&self.delta, &bindings, &self.particles, groups(self.particles.count));
         recording.dispatch_with(&self.blend, &self.blend_bindings, &self.gaussians, groups(self.gaussians.count));
+        if let Some(cover) = &self.cover {
+            cover.record(&self.gaussians, recording);
+        }
     }
 }
 
@@ -136,7 +159,7 @@ pub(super) fn span_m(bound: &Bound, rest_particles: &[Vec3]) -> f32 {
 }
 
 /// Workgroups for `count` threads, folded into two dimensions where one has not enough.
-fn groups(count: u32) -> [u32; 3] {
+pub(super) fn groups(count: u32) -> [u32; 3] {
     let groups = count.div_ceil(GROUP_SIZE);
     let rows = groups.div_ceil(65_535).max(1);
     [groups.div_ceil(rows), rows, 1]
@@ -144,7 +167,7 @@ fn groups(count: u32) -> [u32; 3] {
 
 const AFFINE: (&str, &str) = ("skin/affine.wgsl", include_str!("../../shaders/skin/affine.wgsl"));
 const DELTA: (&str, &str) = ("skin/delta.wgsl", include_str!("../../shaders/skin/delta.wgsl"));
-const ROTATION: (&str, &str) = ("skin/rotation.wgsl", include_str!("../../shaders/skin/rotation.wgsl"));
+pub(super) const ROTATION: (&str, &str) = ("skin/rotation.wgsl", include_str!("../../shaders/skin/rotation.wgsl"));
 const BLEND: (&str, &str) = ("skin/blend.wgsl", include_str!("../../shaders/skin/blend.wgsl"));
 
 fn delta_source(weights: Weights) -> KernelSource {
@@ -153,7 +176,7 @@ fn delta_source(weights: Weights) -> KernelSource {
         entry: "main",
         parts: vec![AFFINE, DELTA],
         constants: vec![("GROUP_SIZE", Constant::U32(GROUP_SIZE)), ("PAPER", Constant::Bool(weights == Weights::Paper))],
-        bindings: vec![Access::Read, Access::Read, Access::Write],
+        bindings: vec![Access::Read, Access::Read, Access::Write, Access::Write],
         immediate_bytes: size_of::<Immediates>() as u32,
     }
 }
@@ -163,26 +186,31 @@ fn blend_source(vectors: u32, weights: Weights) -> KernelSource {
         label: "skin.blend",
         entry: "main",
         parts: vec![AFFINE, ROTATION, BLEND],
-        constants: vec![
-            ("GROUP_SIZE", Constant::U32(GROUP_SIZE)),
-            ("VECTORS", Constant::U32(vectors)),
-            ("PAPER", Constant::Bool(weights == Weights::Paper)),
-            ("PART_LOW", Constant::F32(PART[0])),
-            ("PART_HIGH", Constant::F32(PART[1])),
-            ("STRETCH_LOW", Constant::F32(STRETCH[0])),
-            ("STRETCH_HIGH", Constant::F32(STRETCH[1])),
-            ("SMALLEST_DETERMINANT", Constant::F32(SMALLEST_DETERMINANT)),
-            ("POLAR_STEPS", Constant::U32(POLAR_STEPS)),
-            ("JACOBI_SWEEPS", Constant::U32(JACOBI_SWEEPS)),
-        ],
-        bindings: vec![Access::Read, Access::Read, Access::Read, Access::Read, Access::Read, Access::Write],
+        constants: [constants(), vec![("VECTORS", Constant::U32(vectors)), ("PAPER", Constant::Bool(weights == Weights::Paper))]].concat(),
+        bindings: [[Access::Read; 5].as_slice(), &[Access::Write, Access::Read, Access::Write]].concat(),
         immediate_bytes: size_of::<Immediates>() as u32,
     }
 }
 
+pub(super) fn constants() -> Vec<(&'static str, Constant)> {
+    vec![
+        ("GROUP_SIZE", Constant::U32(GROUP_SIZE)),
+        ("PART_LOW", Constant::F32(PART[0])),
+        ("PART_HIGH", Constant::F32(PART[1])),
+        ("LEFT_LOW", Constant::F32(cover::LEFT[0])),
+        ("LEFT_HIGH", Constant::F32(cover::LEFT[1])),
+        ("STRETCH_LOW", Constant::F32(STRETCH[0])),
+        ("STRETCH_HIGH", Constant::F32(STRETCH[1])),
+        ("SMALLEST_DETERMINANT", Constant::F32(SMALLEST_DETERMINANT)),
+        ("POLAR_STEPS", Constant::U32(POLAR_STEPS)),
+        ("JACOBI_SWEEPS", Constant::U32(JACOBI_SWEEPS)),
+    ]
+}
+
 /// Every pass of this room, in the forms that K = 8 and both kinds of weights give.
 pub fn kernels() -> Vec<KernelSource> {
-    [Weights::Exact, Weights::Paper].into_iter().flat_map(|weights| [delta_source(weights), blend_source(2, weights)]).collect()
+    let weighed = [Weights::Exact, Weights::Paper].into_iter().flat_map(|weights| [delta_source(weights), blend_source(2, weights)]);
+    weighed.chain(cover::sources()).collect()
 }
 
 /// All WGSL of this room, for the keys of stages.

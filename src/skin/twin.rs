@@ -1,5 +1,6 @@
 //! Skinning in plain Rust: what the two passes compute, one particle or Gaussian at a time.
 
+use super::cover::LEFT;
 use super::skinner::{PART, POLAR_STEPS, SMALLEST_DETERMINANT, STRETCH};
 use super::{Bound, STATIC};
 use crate::spec::Weights;
@@ -38,7 +39,7 @@ pub struct Frame {
     pub span_m: f32,
 }
 
-fn smoothstep([low, high]: [f32; 2], value: f32) -> f32 {
+pub(super) fn smoothstep([low, high]: [f32; 2], value: f32) -> f32 {
     let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
@@ -89,15 +90,13 @@ pub fn blend(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta],
         })
     };
     let mut sum = weighed(weight);
-    if weights == Weights::Exact && sum.is_finite() {
-        let c = Vec3::from_slice(rest) - origin;
-        let spans = |i: u32| (deltas[i as usize].carry(c) - nearest.carry(c)).length() / frame.span_m;
-        if index.iter().zip(weight).any(|(&i, &w)| w > 0.0 && spans(i) > PART[0]) {
-            let kept: Vec<f32> = index.iter().zip(weight).map(|(&i, w)| w * (1.0 - smoothstep(PART, spans(i)))).collect();
-            let total: f32 = kept.iter().sum();
-            let part = weighed(&kept);
-            sum = Delta { linear: part.linear * (1.0 / total), offset: part.offset / total };
-        }
+    if weights == Weights::Exact
+        && sum.is_finite()
+        && let Some(kept) = parted(rest, index, weight, deltas, frame)
+    {
+        let total: f32 = kept.iter().sum();
+        let part = weighed(&kept);
+        sum = Delta { linear: part.linear * (1.0 / total), offset: part.offset / total };
     }
     let d = [sum, nearest].into_iter().find(|d| d.is_finite()).unwrap_or(Delta::ZERO);
     let mut record = *rest;
@@ -108,6 +107,23 @@ pub fn blend(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta],
         deform(&mut record, d, nearest, weights);
     }
     record
+}
+
+/// The weights that particles which stay near the nearest one keep; none where all stay.
+fn parted(rest: &[f32; 16], index: &[u32], weight: &[f32], deltas: &[Delta], frame: Frame) -> Option<Vec<f32>> {
+    let c = Vec3::from_slice(rest) - frame.origin;
+    let there = deltas[index[0] as usize].carry(c);
+    let spans = |i: u32| (deltas[i as usize].carry(c) - there).length() / frame.span_m;
+    let parts = index.iter().zip(weight).any(|(&i, &w)| w > 0.0 && spans(i) > PART[0]);
+    parts.then(|| index.iter().zip(weight).map(|(&i, w)| w * (1.0 - smoothstep(PART, spans(i)))).collect())
+}
+
+/// How far a Gaussian whose matter keeps no shape has lost its own, 0 to 1.
+pub fn loose(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta], frame: Frame) -> f32 {
+    let k = bound.neighbours as usize;
+    let slots = gaussian * k..(gaussian + 1) * k;
+    let kept = parted(rest, &bound.index[slots.clone()], &bound.weight[slots], deltas, frame);
+    smoothstep(LEFT, 1.0 - kept.map_or(1.0, |kept| kept.iter().sum()))
 }
 
 /// Turns and stretches a record's covariance and the frame of its spherical harmonics.
@@ -121,9 +137,14 @@ fn deform(record: &mut [f32; 16], d: Delta, nearest: Delta, weights: Weights) {
         let turn = (Quat::from_mat3(&r) * Quat::from_slice(&record[12..])).normalize();
         turn.write_to_slice(&mut record[12..]);
     }
-    let [xx, xy, xz, yy, yz, zz] = [record[4], record[5], record[6], record[7], record[8], record[9]];
-    let c = f * Mat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]) * f.transpose();
+    let c = f * covariance_of(record) * f.transpose();
     record[4..10].copy_from_slice(&[c.x_axis.x, c.x_axis.y, c.x_axis.z, c.y_axis.y, c.y_axis.z, c.z_axis.z]);
+}
+
+/// Of a record.
+pub(super) fn covariance_of(record: &[f32; 16]) -> Mat3 {
+    let [xx, xy, xz, yy, yz, zz] = [record[4], record[5], record[6], record[7], record[8], record[9]];
+    Mat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz])
 }
 
 /// The rotation R of F = R S for a positive determinant, by Newton's iteration (Higham 1986).
@@ -148,7 +169,7 @@ fn limited(f: Mat3, r: Mat3) -> Mat3 {
 }
 
 /// Eigenvalues and vectors of a symmetric matrix, by Jacobi's method.
-fn eigen(matrix: Mat3) -> (Vec3, Mat3) {
+pub(super) fn eigen(matrix: Mat3) -> (Vec3, Mat3) {
     let mut s = (matrix + matrix.transpose()) * 0.5;
     let mut v = Mat3::IDENTITY;
     for step in 0..3 * super::skinner::JACOBI_SWEEPS {

@@ -177,6 +177,14 @@ impl Substance {
         }
     }
 
+    /// Whether the shape of its Gaussians means nothing any more once they part.
+    pub fn sheds_shape(&self) -> bool {
+        matches!(
+            self,
+            Substance::Liquid { .. } | Substance::SphLiquid { .. } | Substance::Sand { .. } | Substance::Snow { .. } | Substance::Viscoplastic { .. }
+        )
+    }
+
     /// Whether it flows without any shear modulus.
     pub fn is_liquid(&self) -> bool {
         matches!(self, Substance::Liquid { .. })

@@ -50,7 +50,10 @@ impl Engine {
         let bound = self.bound(spec, &ready, &solids.value)?;
         let matter = matter(spec, &ready.prepared.value, &solids.value);
         let gpu = self.device()?.clone();
-        let figure = Figure::new(&gpu, &ready.prepared.value, &bound.value, &matter.particles.position_m, spec.skin.weights)?;
+        let mut figure = Figure::new(&gpu, &ready.prepared.value, &bound.value, &matter.particles.position_m, spec.skin.weights)?;
+        if matter.sheds_shape() {
+            figure.shed()?;
+        }
         Ok(Some(Player {
             frames,
             frames_total: ready.resolved.frames,

@@ -99,13 +99,17 @@ fn warnings(ready: &Ready, solids: &[crate::proxy::Solid], matter: &Matter) -> V
 
 /// The figure of the last run where it is of the same binding, else a new one.
 fn take_figure(engine: &mut Engine, spec: &Spec, ready: &Ready, bound: &crate::skin::Bound, matter: &Matter) -> Result<Figure, EngineError> {
-    match engine.figure.take() {
-        Some((key, figure)) if key == ready.keys.bind => Ok(figure),
+    let mut figure = match engine.figure.take() {
+        Some((key, figure)) if key == ready.keys.bind => figure,
         _ => {
             let gpu = engine.device()?.clone();
-            Ok(Figure::new(&gpu, &ready.prepared.value, bound, &matter.particles.position_m, spec.skin.weights)?)
+            Figure::new(&gpu, &ready.prepared.value, bound, &matter.particles.position_m, spec.skin.weights)?
         }
+    };
+    if matter.sheds_shape() {
+        figure.shed()?;
     }
+    Ok(figure)
 }
 
 /// Delivers pictures that the store has.

@@ -38,6 +38,13 @@ pub struct Matter {
     pub notes: Vec<String>,
 }
 
+impl Matter {
+    /// Whether any of it keeps no shape, now or after an event.
+    pub fn sheds_shape(&self) -> bool {
+        self.stuffs.iter().flatten().chain(self.changes.iter().flatten()).any(|stuff| stuff.substance.sheds_shape())
+    }
+}
+
 /// Gives each object's solid its materials, one `Solid` for each object of the spec.
 pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Matter {
     let mut matter = Matter {

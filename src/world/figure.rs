@@ -40,6 +40,11 @@ impl Figure {
         Ok(figure)
     }
 
+    /// Readies it for matter that keeps no shape; see [`Skinner::shed`].
+    pub fn shed(&mut self) -> Result<(), GpuError> {
+        self.moved.as_mut().map_or(Ok(()), |moved| moved.skinner.shed(&self.splats))
+    }
+
     /// Uploads a scene in the captured pose; nothing can move it.
     pub fn captured(gpu: &Gpu, prepared: &Prepared) -> Result<Figure, GpuError> {
         let splats = Splats::new(gpu, &prepared.gaussians, prepared.world_from_sh, &prepared.object_of)?;

@@ -11,12 +11,25 @@ use glam::{Mat3, Quat, Vec3};
 
 /// G and the volume ratio of each particle, as a frame has them.
 fn frame(solver: &Solver) -> Vec<(Mat3, f32)> {
+    for (m, state) in motion(solver).iter().zip(solver.states().expect("states")) {
+        let sheds = solver.laws.substances[state.substance()].sheds_shape();
+        assert_eq!(m[7] >> 16, if sheds { u32::from(half::f16::ONE.to_bits()) } else { 0 });
+    }
+    framed(solver)
+}
+
+fn motion(solver: &Solver) -> Vec<[u32; 8]> {
     let gpu = Gpu::shared_for_tests().expect("a device");
     let mut recording = Recording::default();
     solver.record_frame(&mut recording);
     gpu.submit(&recording);
+    gpu.read(solver.motion(), solver.particle_count() as usize).expect("motion")
+}
+
+fn framed(solver: &Solver) -> Vec<(Mat3, f32)> {
+    let gpu = Gpu::shared_for_tests().expect("a device");
+    let motion = motion(solver);
     let n = solver.particle_count() as usize;
-    let motion: Vec<[u32; 8]> = gpu.read(solver.motion(), n).expect("motion");
     let velocity: Vec<[f32; 4]> = gpu.read(solver.velocity(), n).expect("velocity");
     let half = |m: &[u32; 8], k: usize| half::f16::from_bits((m[3 + k / 2] >> (16 * (k % 2))) as u16).to_f32();
     let g = |m: &[u32; 8]| Mat3::from_cols_array(&std::array::from_fn(|k| half(m, k))).transpose() + Mat3::IDENTITY;
