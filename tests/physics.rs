@@ -39,7 +39,7 @@ long_cases! {
     a_cylinder_of_sand_runs_out_as_experiments_say: "V15";
     v19_sloshing: "V19 sloshing";
     v21_swinging_drop: "V21";
-    a_cube_floats_as_archimedes_says: "V23 SPH";
+    cubes_float_as_archimedes_says: "V23";
     a_stack_of_ten_stands: "stack";
     what_was_captured_standing_stays_as_it_stands: "left alone";
     what_is_dropped_bends_and_comes_back: "dropped";

@@ -58,6 +58,8 @@ quick_cases! {
     v19_pool_of_particles: "V19 SPH";
     v20_channel_of_particles: "V20 SPH";
     v24_ball_into_jelly: "V24";
+    v24_pairs: "V24 pairs";
+    thin_plate: "thin plate";
     v25_joint: "V25";
     v26_same_bits: "V26";
     drag: "drag";

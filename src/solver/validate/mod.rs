@@ -2,6 +2,7 @@
 
 mod bodies;
 mod captured;
+mod coupling;
 mod driven;
 mod films;
 mod flakes;
@@ -145,13 +146,15 @@ pub const CASES: &[Case] = &[
     Case { name: "V18 SPH", quick: true, run: sph::dam_break },
     Case { name: "V19 SPH", quick: true, run: sph::hydrostatic },
     Case { name: "V20 SPH", quick: true, run: sph::poiseuille },
-    Case { name: "V23 SPH", quick: false, run: sph::buoyancy },
+    Case { name: "V23", quick: false, run: coupling::buoyancy },
     Case { name: "V26", quick: true, run: repeat::same_bits },
     Case { name: "drag", quick: true, run: driven::drag },
     Case { name: "spring", quick: true, run: driven::spring },
     Case { name: "swirl", quick: true, run: driven::vortex },
     Case { name: "fields", quick: true, run: driven::same_bits },
     Case { name: "V24", quick: true, run: rigid::into_jelly },
+    Case { name: "V24 pairs", quick: true, run: coupling::pairs },
+    Case { name: "thin plate", quick: true, run: coupling::plate },
     Case { name: "V25", quick: true, run: rigid::joint },
     Case { name: "stack", quick: false, run: rigid::stack },
     Case { name: "left alone", quick: false, run: captured::left_alone },

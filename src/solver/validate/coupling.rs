@@ -1,0 +1,173 @@
+//! What meets what: momentum between all kinds of matter, floating bodies (V23), thin colliders.
+
+use super::Check;
+use super::bodies::{block, joined, pool, rigid, walls};
+use super::rigid::momenta;
+use crate::Stop;
+use crate::gpu::Gpu;
+use crate::solver::core::Solver;
+use crate::solver::substance::{Substance, liquid_bulk_pa};
+use crate::solver::types::{Collider, Particles, Plane, Settings, SolverError};
+use crate::spec::{BoxShape, ColliderShape};
+use glam::Vec3;
+
+const GRAVITY_M_S2: f32 = 9.81;
+const SPACING_M: f32 = 0.01;
+const CELL_M: f32 = 2.0 * SPACING_M;
+const LIQUID_KG_M3: f32 = 1000.0;
+
+/// What a block is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Rigid,
+    Elastic,
+    /// On the grid.
+    Liquid,
+    /// Of smoothed particles.
+    Sph,
+}
+
+impl Kind {
+    fn block(self, low_m: Vec3, size_m: Vec3, speed_m_s: f32) -> Particles {
+        let (viscosity_pa_s, surface_tension_n_m) = (1e-3, 0.0);
+        match self {
+            Kind::Rigid => rigid(block(low_m, size_m, SPACING_M, 1e5, 0.3), 0.3, 0.0),
+            Kind::Elastic => block(low_m, size_m, SPACING_M, 5e4, 0.3),
+            Kind::Liquid => {
+                let bulk_pa = liquid_bulk_pa(size_m.z, speed_m_s, GRAVITY_M_S2, LIQUID_KG_M3);
+                pool(low_m, size_m, SPACING_M, LIQUID_KG_M3, bulk_pa, Substance::Liquid { viscosity_pa_s, surface_tension_n_m })
+            }
+            Kind::Sph => {
+                let substances = vec![Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m }];
+                Particles { substances, ..block(low_m, size_m, SPACING_M, 1.0, 0.0) }
+            }
+        }
+    }
+}
+
+const PAIRS: [(&str, Kind, Kind); 9] = [
+    ("V24 momentum, rigid on rigid", Kind::Rigid, Kind::Rigid),
+    ("V24 momentum, rigid on elastic", Kind::Elastic, Kind::Rigid),
+    ("V24 momentum, elastic on rigid", Kind::Rigid, Kind::Elastic),
+    ("V24 momentum, rigid on liquid", Kind::Liquid, Kind::Rigid),
+    ("V24 momentum, rigid on liquid of particles", Kind::Sph, Kind::Rigid),
+    ("V24 momentum, elastic on elastic", Kind::Elastic, Kind::Elastic),
+    ("V24 momentum, elastic on liquid", Kind::Liquid, Kind::Elastic),
+    ("V24 momentum, elastic on liquid of particles", Kind::Sph, Kind::Elastic),
+    ("V24 momentum, liquid on liquid of particles", Kind::Sph, Kind::Liquid),
+];
+
+/// V24: a block flies into another in free space, for every pair of kinds; whatever one loses the other gains.
+pub(super) fn pairs(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let (size_m, velocity_m_s) = (Vec3::splat(0.08), Vec3::new(0.4, 0.0, -2.0));
+    let mut checks = Vec::new();
+    for (name, still, flying) in PAIRS {
+        let mut particles = joined(still.block(Vec3::ZERO, size_m, 2.0), flying.block(Vec3::new(0.013, 0.007, 0.1), size_m, 2.0));
+        let first = particles.len() / 2;
+        particles.velocity_m_s[first..].fill(velocity_m_s);
+        let settings = Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) };
+        let mut solver = Solver::new(gpu, settings, &particles)?;
+        let before = momenta(&solver)?.0;
+        solver.advance(0.06, &Stop::default())?;
+        let lost = (momenta(&solver)?.0 - before).length() / before.length();
+        checks.push(Check::new(name, "share lost: 0", "Newton", "1").compare(0.0, lost, 1e-3));
+        let states = solver.states()?;
+        let given = states[..first].iter().map(|s| f64::from(s.velocity_m_s.z)).sum::<f64>() / first as f64;
+        let takes = "V24 what is hit takes a part of the speed, 5 % or more";
+        checks.push(Check::new(takes, "1", "", "").compare(1.0, f64::from(u8::from(given < -0.05 * 2.0)), 0.0));
+    }
+    Ok(checks)
+}
+
+/// Spacings along each axis of a pool, and along the edges of a cube.
+const POOL: [u32; 3] = [28, 28, 22];
+const CUBE: u32 = 12;
+
+const FLOATING: [(&str, Kind, Kind, f32); 6] = [
+    ("V23 elastic cube in liquid", Kind::Elastic, Kind::Liquid, 500.0),
+    ("V23 elastic cube in liquid of particles", Kind::Elastic, Kind::Sph, 500.0),
+    ("V23 rigid cube in liquid", Kind::Rigid, Kind::Liquid, 500.0),
+    ("V23 rigid cube in liquid of particles", Kind::Rigid, Kind::Sph, 500.0),
+    ("V23 heavier rigid cube in liquid", Kind::Rigid, Kind::Liquid, 750.0),
+    ("V23 heavier rigid cube in liquid of particles", Kind::Rigid, Kind::Sph, 750.0),
+];
+
+/// V23: how deep a cube floats.
+pub(super) fn buoyancy(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let floats = |&(name, cube, liquid, density): &(&'static str, Kind, Kind, f32)| {
+        let share = submerged(gpu, cube, liquid, density)?;
+        let check = Check::new(name, "submerged share = density over the liquid's", "Archimedes", "");
+        Ok(check.compare(f64::from(density / LIQUID_KG_M3), share, 0.05))
+    };
+    FLOATING.iter().map(floats).collect()
+}
+
+/// Mean submerged share of a cube that was let go near where it floats, over the end of a run.
+fn submerged(gpu: &Gpu, cube: Kind, liquid: Kind, density_kg_m3: f32) -> Result<f64, SolverError> {
+    let room_m = Vec3::from(POOL.map(|c| c as f32)) * SPACING_M;
+    let edge_m = CUBE as f32 * SPACING_M;
+    let level_m = room_m.z;
+    let low_m = Vec3::new(0.5 * (room_m.x - edge_m), 0.5 * (room_m.y - edge_m), level_m - (0.5 * CUBE as f32).round() * SPACING_M);
+    let mut floating = cube.block(low_m, Vec3::splat(edge_m), 0.0);
+    floating.density_kg_m3.fill(density_kg_m3);
+    let whole = liquid.block(Vec3::ZERO, room_m, 0.0);
+    let kept: Vec<usize> = (0..whole.len()).filter(|&i| !inside(whole.position_m[i], low_m, edge_m)).collect();
+    let bulk_pa = whole.young_pa[0];
+    let liquids = kept.len();
+    let pool = Particles {
+        position_m: kept.iter().map(|&i| whole.position_m[i]).collect(),
+        velocity_m_s: vec![Vec3::ZERO; liquids],
+        volume_m3: vec![SPACING_M.powi(3); liquids],
+        density_kg_m3: vec![LIQUID_KG_M3; liquids],
+        young_pa: vec![bulk_pa; liquids],
+        poisson: vec![0.0; liquids],
+        substance: vec![0; liquids],
+        object: vec![0; liquids],
+        ..whole
+    };
+    let mut settings = Settings::new(CELL_M);
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.0, restitution: 0.0 });
+    settings.colliders = walls(Vec3::ZERO, room_m);
+    let mut solver = Solver::new(gpu, settings, &joined(pool, floating))?;
+    let (mut under, samples) = (0.0, 30);
+    for k in 1..=60 {
+        solver.advance(0.04 * f64::from(k), &Stop::default())?;
+        let states = solver.states()?;
+        let mean_z = |some: &[crate::solver::state::ParticleState]| some.iter().map(|s| s.position_m.z).sum::<f32>() / some.len() as f32;
+        let bottom = mean_z(&states[liquids..]) - 0.5 * edge_m;
+        // Where the surface stands: the mean height of a flat pool that the cube reaches into.
+        let mean = mean_z(&states[..liquids]);
+        let narrow = edge_m * edge_m / (room_m.x * room_m.y - edge_m * edge_m);
+        let level = mean + (mean * mean + narrow * bottom * (2.0 * mean - bottom)).sqrt();
+        under += if k > 60 - samples { f64::from((level - bottom) / edge_m) / f64::from(samples) } else { 0.0 };
+    }
+    Ok(under)
+}
+
+fn inside(p: Vec3, low_m: Vec3, edge_m: f32) -> bool {
+    p.cmpgt(low_m).all() && p.cmplt(low_m + edge_m).all()
+}
+
+const ON_A_PLATE: [(&str, Kind); 4] = [
+    ("thin plate under a rigid block", Kind::Rigid),
+    ("thin plate under an elastic block", Kind::Elastic),
+    ("thin plate under liquid", Kind::Liquid),
+    ("thin plate under liquid of particles", Kind::Sph),
+];
+
+/// A plate a quarter of a cell thin holds what falls on it at 4 m/s.
+pub(super) fn plate(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let thick_m = 0.25 * CELL_M;
+    let holds = |&(name, kind): &(&'static str, Kind)| {
+        let mut particles = kind.block(Vec3::new(-0.05, -0.05, 0.02), Vec3::splat(0.1), 4.0);
+        particles.velocity_m_s.fill(Vec3::new(0.0, 0.0, -4.0));
+        let shape = BoxShape { centre_m: [0.0, 0.0, f64::from(-0.5 * thick_m)], size_m: [4.0, 4.0, f64::from(thick_m)] };
+        let colliders = vec![Collider { shape: ColliderShape::Box(shape), friction: 0.3, restitution: 0.0 }];
+        let mut solver = Solver::new(gpu, Settings { colliders, ..Settings::new(CELL_M) }, &particles)?;
+        solver.advance(0.25, &Stop::default())?;
+        let states = solver.states()?;
+        let through = states.iter().filter(|s| s.position_m.z < -0.5 * thick_m).count() as f64 / states.len() as f64;
+        Ok(Check::new(name, "share that gets through: 0", "what is solid", "1").compare(0.0, through, 0.0))
+    };
+    ON_A_PLATE.iter().map(holds).collect()
+}
