@@ -80,26 +80,25 @@ pub(super) fn pairs(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
 }
 
 /// Spacings along each axis of a pool, and along the edges of a cube.
-const POOL: [u32; 3] = [28, 28, 22];
-const CUBE: u32 = 12;
+const POOL: [u32; 3] = [20, 20, 15];
+const CUBE: u32 = 8;
 
-const FLOATING: [(&str, Kind, Kind, f32); 6] = [
-    ("V23 elastic cube in liquid", Kind::Elastic, Kind::Liquid, 500.0),
-    ("V23 elastic cube in liquid of particles", Kind::Elastic, Kind::Sph, 500.0),
-    ("V23 rigid cube in liquid", Kind::Rigid, Kind::Liquid, 500.0),
-    ("V23 rigid cube in liquid of particles", Kind::Rigid, Kind::Sph, 500.0),
-    ("V23 heavier rigid cube in liquid", Kind::Rigid, Kind::Liquid, 750.0),
-    ("V23 heavier rigid cube in liquid of particles", Kind::Rigid, Kind::Sph, 750.0),
-];
+/// V23: how deep cubes float in a liquid on the grid.
+pub(super) fn floating(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let cubes = [("V23 elastic cube", Kind::Elastic, 500.0), ("V23 rigid cube", Kind::Rigid, 500.0), ("V23 heavier rigid cube", Kind::Rigid, 750.0)];
+    cubes.into_iter().map(|(name, cube, density)| floats(gpu, name, cube, Kind::Liquid, density)).collect()
+}
 
-/// V23: how deep a cube floats.
-pub(super) fn buoyancy(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
-    let floats = |&(name, cube, liquid, density): &(&'static str, Kind, Kind, f32)| {
-        let share = submerged(gpu, cube, liquid, density)?;
-        let check = Check::new(name, "submerged share = density over the liquid's", "Archimedes", "");
-        Ok(check.compare(f64::from(density / LIQUID_KG_M3), share, 0.05))
-    };
-    FLOATING.iter().map(floats).collect()
+/// V23: how deep cubes float in a liquid of smoothed particles.
+pub(super) fn floating_on_particles(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let cubes = [("V23 SPH elastic cube", Kind::Elastic, 500.0), ("V23 SPH rigid cube", Kind::Rigid, 500.0)];
+    cubes.into_iter().map(|(name, cube, density)| floats(gpu, name, cube, Kind::Sph, density)).collect()
+}
+
+fn floats(gpu: &Gpu, name: &'static str, cube: Kind, liquid: Kind, density_kg_m3: f32) -> Result<Check, SolverError> {
+    let share = submerged(gpu, cube, liquid, density_kg_m3)?;
+    let check = Check::new(name, "submerged share = density over the liquid's", "Archimedes", "");
+    Ok(check.compare(f64::from(density_kg_m3 / LIQUID_KG_M3), share, 0.05))
 }
 
 /// Mean submerged share of a cube that was let go near where it floats, over the end of a run.
@@ -129,8 +128,8 @@ fn submerged(gpu: &Gpu, cube: Kind, liquid: Kind, density_kg_m3: f32) -> Result<
     settings.ground = Some(Plane { height_m: 0.0, friction: 0.0, restitution: 0.0 });
     settings.colliders = walls(Vec3::ZERO, room_m);
     let mut solver = Solver::new(gpu, settings, &joined(pool, floating))?;
-    let (mut under, samples) = (0.0, 30);
-    for k in 1..=60 {
+    let (mut under, samples) = (0.0, 20);
+    for k in 1..=40 {
         solver.advance(0.04 * f64::from(k), &Stop::default())?;
         let states = solver.states()?;
         let mean_z = |some: &[crate::solver::state::ParticleState]| some.iter().map(|s| s.position_m.z).sum::<f32>() / some.len() as f32;
@@ -139,7 +138,7 @@ fn submerged(gpu: &Gpu, cube: Kind, liquid: Kind, density_kg_m3: f32) -> Result<
         let mean = mean_z(&states[..liquids]);
         let narrow = edge_m * edge_m / (room_m.x * room_m.y - edge_m * edge_m);
         let level = mean + (mean * mean + narrow * bottom * (2.0 * mean - bottom)).sqrt();
-        under += if k > 60 - samples { f64::from((level - bottom) / edge_m) / f64::from(samples) } else { 0.0 };
+        under += if k > 40 - samples { f64::from((level - bottom) / edge_m) / f64::from(samples) } else { 0.0 };
     }
     Ok(under)
 }

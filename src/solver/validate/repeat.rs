@@ -30,16 +30,35 @@ fn every_law() -> Particles {
     })
 }
 
+/// Small blocks that fall onto each other: rigid, half rigid, elastic, and a liquid of each kind.
+fn all_that_meets() -> Particles {
+    let at = |k: usize| block(Vec3::new(0.11 * (k % 3) as f32, 0.02 * k as f32, 0.03 + 0.11 * (k / 3) as f32), Vec3::splat(0.1), 0.025, 5e4, 0.3);
+    let stone = Substance::Rigid { friction: 0.4, restitution: 0.3 };
+    let mut half = at(0);
+    half.substance = half.position_m.iter().map(|p| u16::from(p.x > 0.05)).collect();
+    half.substances.push(stone.clone());
+    let (viscosity_pa_s, surface_tension_n_m) = (0.1, 0.05);
+    let liquids = [Substance::Liquid { viscosity_pa_s, surface_tension_n_m }, Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m }];
+    let others = liquids.into_iter().chain([stone.clone(), stone, Substance::default()]);
+    others.enumerate().fold(half, |mut all, (k, substance)| {
+        append(&mut all, at(k + 1), substance);
+        all
+    })
+}
+
 /// Blocks that hit the ground at a slant, twice, and once more from a checkpoint in the middle.
 pub(super) fn same_bits(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let elastic = runs(gpu, block(Vec3::new(0.0, 0.0, 0.06), Vec3::splat(0.2), 0.025, 5e4, 0.3))?;
     let laws = runs(gpu, every_law())?;
+    let coupled = runs(gpu, all_that_meets())?;
     let check = |name, differing| Check::new(name, "bytes that differ", "integer sums, fixed order", "bytes").compare(0.0, differing, 0.0);
     Ok(vec![
         check("V26 a second run", elastic[0]),
         check("V26 from a checkpoint", elastic[1]),
         check("V26 every law, a second run", laws[0]),
         check("V26 every law, from a checkpoint", laws[1]),
+        check("V26 bodies among all else, a second run", coupled[0]),
+        check("V26 bodies among all else, from a checkpoint", coupled[1]),
     ])
 }
 
