@@ -72,7 +72,7 @@ fn meet(a: ptr<function, Side>, b: ptr<function, Side>) {
         return;
     }
     let sliding = relative - normal * approach;
-    let friction = max(surfaces[(*a).layer].x, surfaces[(*b).layer].x);
+    let friction = sqrt(surfaces[(*a).layer].x * surfaces[(*b).layer].x);
     let held = min(friction * stopped / max(length(sliding), 1e-20), 1.0);
     let impulse = (normal * stopped + sliding * held) / ease;
     (*a).v -= impulse * (*a).ease;

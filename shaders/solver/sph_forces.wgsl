@@ -27,7 +27,9 @@ fn tension(y: vec3<f32>, q: f32, mine: vec4<f32>, other: vec4<f32>, volume: f32,
     let hessian = steep * pull + ((bend(q) - steep) * dot(pull, along)) * along;
     let rest = 1.0 - q;
     let held = COHESION * rest * rest * max(q - KEEP_APART, 0.0);
-    let apart = (KEEP_APART_STRENGTH * max(1.0 - q / KEEP_APART, 0.0) - held) * 0.5 * (mine.w + other.w) / own_volume;
+    // As between two of the eight particles of a full cell; lighter ones at an edge weigh in with their share.
+    let share = 8.0 * min(volume / own_volume, 1.0);
+    let apart = (KEEP_APART_STRENGTH * max(1.0 - q / KEEP_APART, 0.0) - held) * 0.5 * (mine.w + other.w) * share;
     return apart * along - (TENSION * volume) * hessian;
 }
 

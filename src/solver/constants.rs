@@ -189,6 +189,8 @@ pub const RIGID_STEP_S: f64 = 5e-4;
 /// And in units of the time in which the smallest body falls by its own radius.
 pub const RIGID_STEP_SHARE: f64 = 0.02;
 
+/// Coulomb coefficient of what has none of its own, against other objects.
+pub const FRICTION: f32 = 0.3;
 /// Layers of the grid at most: objects that move apart from each other.
 pub const MOST_LAYERS: u32 = 8;
 /// Rounds over the pairs of a node where more than two objects meet.

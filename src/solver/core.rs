@@ -140,7 +140,7 @@ impl Solver {
             pins_buffer: gpu.storage::<PinRecord>("solver.pins", settings.pins.len().max(1))?,
             objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,
             object_count,
-            encounter: Encounter::new(gpu, &settings, &states, object_count)?,
+            encounter: Encounter::new(gpu, &settings, &states, &particles.substances, object_count)?,
             laws: Laws::new(gpu)?,
             liquid: None,
             control: gpu.storage::<Control>("solver.control", 1)?,

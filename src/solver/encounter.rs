@@ -7,6 +7,7 @@ use super::core::Solver;
 use super::grid::GridBuffers;
 use super::passes::SUBSTEP;
 use super::state::ParticleState;
+use super::substance::Substance;
 use super::types::{Settings, SolverError};
 use crate::gpu::Gpu;
 
@@ -15,9 +16,6 @@ passes! {
     EncounterPasses;
     encounter: ["substep", "node", "encounter"] [Read, Read, Read, Read, Write] SUBSTEP;
 }
-
-/// Coulomb coefficient between objects where the settings name none.
-const FRICTION: f32 = 0.3;
 
 /// What a scene of several objects has beside others.
 #[derive(Debug)]
@@ -35,13 +33,18 @@ pub(super) fn layers(settings: &Settings, states: &[ParticleState], object_count
 }
 
 /// Of each layer: the largest Coulomb coefficient of its objects, and their volume, m^3.
-pub(super) fn surfaces(settings: &Settings, states: &[ParticleState], object_count: u32) -> Vec<[f32; 2]> {
+pub(super) fn surfaces(settings: &Settings, states: &[ParticleState], substances: &[Substance], object_count: u32) -> Vec<[f32; 2]> {
     let layers = layers(settings, states, object_count) as usize;
-    let mut volume_m3 = vec![0.0f64; layers];
-    states.iter().for_each(|s| volume_m3[s.object() as usize % layers] += f64::from(s.volume_m3));
-    let of = |object: usize| settings.frictions.get(object).copied().unwrap_or(FRICTION);
-    let largest = |layer: usize| (layer..object_count as usize).step_by(layers).map(of).fold(0.0, f32::max);
-    volume_m3.iter().enumerate().map(|(layer, &volume)| [largest(layer), volume as f32]).collect()
+    // Of each object: volume, and volume times friction.
+    let mut sums = vec![[0.0f64; 2]; object_count as usize];
+    for state in states {
+        let (volume, friction) = (f64::from(state.volume_m3), substances.get(state.substance()).map_or(0.0, Substance::friction));
+        let [total, rough] = &mut sums[state.object() as usize];
+        (*total, *rough) = (*total + volume, *rough + volume * f64::from(friction));
+    }
+    let of = |object: usize| settings.frictions.get(object).copied().unwrap_or((sums[object][1] / sums[object][0].max(1e-30)) as f32);
+    let members = |layer: usize| (layer..object_count as usize).step_by(layers);
+    (0..layers).map(|layer| [members(layer).map(of).fold(0.0, f32::max), members(layer).map(|o| sums[o][0]).sum::<f64>() as f32]).collect()
 }
 
 impl Solver {
@@ -49,8 +52,11 @@ impl Solver {
     pub(super) fn set_layers(&mut self, states: &[ParticleState]) -> Result<(), SolverError> {
         let layers = layers(&self.settings, states, self.object_count);
         if layers != self.params.layers {
-            self.encounter = Encounter::new(&self.gpu, &self.settings, states, self.object_count)?;
+            self.encounter = Encounter::new(&self.gpu, &self.settings, states, &self.laws.substances, self.object_count)?;
             self.params.layers = layers;
+        } else if let Some(encounter) = &self.encounter {
+            // What turns to water slips from then on.
+            self.gpu.upload(&encounter.surfaces, &surfaces(&self.settings, states, &self.laws.substances, self.object_count));
         }
         self.soft = states.iter().any(|s| !s.is_rigid());
         if self.grid.as_ref().is_some_and(|g| g.kind != self.grid_kind()) {
@@ -63,11 +69,17 @@ impl Solver {
 
 impl Encounter {
     /// None where there is one layer.
-    pub fn new(gpu: &Gpu, settings: &Settings, states: &[ParticleState], object_count: u32) -> Result<Option<Encounter>, SolverError> {
+    pub fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        states: &[ParticleState],
+        substances: &[Substance],
+        object_count: u32,
+    ) -> Result<Option<Encounter>, SolverError> {
         if layers(settings, states, object_count) == 1 {
             return Ok(None);
         }
-        let surfaces = gpu.storage_from("solver.surfaces", &surfaces(settings, states, object_count))?;
+        let surfaces = gpu.storage_from("solver.surfaces", &surfaces(settings, states, substances, object_count))?;
         Ok(Some(Encounter { passes: EncounterPasses::new(gpu), surfaces }))
     }
 

@@ -1,6 +1,6 @@
 //! What particles are made of: a table of substances, a row for each, that the passes read.
 
-use super::constants::{J_LEAST, LIQUID_J_MOST, LOOSE_MOST};
+use super::constants::{FRICTION, J_LEAST, LIQUID_J_MOST, LOOSE_MOST};
 use crate::spec::ElasticModel;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
@@ -216,6 +216,16 @@ impl Substance {
     /// Whether it flows, by whichever method.
     pub fn flows_freely(&self) -> bool {
         self.is_liquid() || self.is_sph()
+    }
+
+    /// Coulomb coefficient of its surface against other objects: grains slide on others as on themselves, liquids freely.
+    pub(super) fn friction(&self) -> f32 {
+        match self {
+            Substance::Rigid { friction, .. } => *friction,
+            Substance::Sand { friction_angle_deg, .. } => friction_angle_deg.to_radians().tan(),
+            Substance::Liquid { .. } | Substance::SphLiquid { .. } => 0.0,
+            _ => FRICTION,
+        }
     }
 
     /// Whether nothing deforms it.

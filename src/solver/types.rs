@@ -156,8 +156,8 @@ pub struct Settings {
     pub forces: Vec<ObjectForce>,
     /// What is driven by expressions.
     pub fields: Vec<Field>,
-    /// Coulomb coefficient of each object against others, by index; of two the larger counts. 0.3 where the
-    /// list ends.
+    /// Coulomb coefficient of each object against others, by index; between two the root of the product of theirs
+    /// counts. Where the list ends, that of what the object is made of.
     pub frictions: Vec<f32>,
     /// Objects that touch stick together: what is one body, driven in parts. Else they meet with friction.
     pub glued: bool,

@@ -3,7 +3,7 @@
 //! A value is drawn for whatever the schema allows, so that a field that is added is drawn too. What
 //! only makes sense together (names, the scene, the length of a run) is set afterwards.
 
-use super::{Spec, SpecError, schema};
+use super::{Force, Spec, SpecError, schema};
 use serde_json::{Map, Value, json};
 
 /// Longest run, in frames.
@@ -20,8 +20,6 @@ const EXPRESSIONS: [&str; 6] = [
 
 /// What was drawn and does not go together is taken out, so many times.
 const REPAIRS: u32 = 32;
-/// Ways of a force, of which it has one.
-const FORCES: [&str; 8] = ["acceleration_m_s2", "wind", "drag", "vortex", "attractor", "explosion", "spring", "motor"];
 /// Effects of an event, of which it has one.
 const EVENTS: [&str; 6] = ["push_m_s", "velocity_m_s", "material", "weaken", "freeze", "release"];
 
@@ -233,7 +231,7 @@ fn make_sense(value: &mut Value, scene_file: &str, seed: u64, random: &mut Rando
 /// Of the ways that exclude each other in a force or an event, one; a plain one where none was drawn.
 fn one_way(item: &mut Map<String, Value>, list: &str, random: &mut Random) {
     let (ways, plain): (&[&str], _) = match list {
-        "force" => (&FORCES, "acceleration_m_s2"),
+        "force" => (Force::WAYS, "acceleration_m_s2"),
         "event" => (&EVENTS, "push_m_s"),
         _ => return,
     };

@@ -168,13 +168,12 @@ fn span(place: &str, from_s: f64, to_s: Until) -> Result<(), SpecError> {
     }
 }
 
-const WAYS: &str = "acceleration_m_s2, wind, drag, vortex, attractor, explosion, spring or motor, one of them";
-
 /// Exactly one way to act, and that one whole.
 fn drive(place: &str, force: &Force) -> Result<(), SpecError> {
     let conflict = |place: String, message: &str, allowed: &str| Err(SpecError::new(SpecErrorKind::Conflict, place, message).allowed(allowed));
+    let ways = format!("{}, one of them", Force::WAYS.join(", "));
     match force.drives().as_slice() {
-        [] => conflict(place.to_owned(), "nothing acts", WAYS),
+        [] => conflict(place.to_owned(), "nothing acts", &ways),
         [Drive::Expression(text)] => match parse(text, Kind::Vector) {
             Ok(_) => Ok(()),
             Err(fault) => Err(expression(&format!("{place}.acceleration_m_s2"), &fault)),
@@ -190,7 +189,7 @@ fn drive(place: &str, force: &Force) -> Result<(), SpecError> {
         }
         [Drive::Spring(spring)] => points(&format!("{place}.spring.path_m"), &spring.path_m),
         [_] => Ok(()),
-        [..] => conflict(place.to_owned(), "several ways at once", WAYS),
+        [..] => conflict(place.to_owned(), "several ways at once", &ways),
     }
 }
 

@@ -3,9 +3,10 @@
 
 use super::ObjectFacts;
 use super::prepared::support_below;
+use super::spread;
 use crate::solver::velocity_change;
 use crate::spec::expression::{Inputs, Program};
-use crate::spec::{FieldFacts, Force, Object, Spec};
+use crate::spec::{Event, FieldFacts, Force, Object, Spec};
 use glam::DVec3;
 
 /// Seconds granted after the last landing or stop, for what ballistics do not know.
@@ -24,12 +25,25 @@ pub struct Path {
     pub points: Vec<DVec3>,
     /// When it has landed and stopped.
     pub rests_s: f64,
+    /// When it first stands on something.
+    pub lands_s: Option<f64>,
+    /// Where it comes apart and flows, and how far from its middle it gets.
+    pub puddle: Option<(DVec3, f64)>,
 }
 
 /// A body on its way: displacement from the captured pose, and velocity.
 struct Body {
     at: DVec3,
     velocity: DVec3,
+    /// Pushes that wait for its landing, and whether it has been in the air.
+    waiting: Vec<Event>,
+    flown: bool,
+}
+
+impl Body {
+    fn push(&mut self, event: &Event) {
+        self.velocity = event.velocity_m_s.map_or(self.velocity, DVec3::from) + event.push_m_s.map_or(DVec3::ZERO, DVec3::from);
+    }
 }
 
 /// What drives one object over spans of time.
@@ -82,19 +96,26 @@ pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, ground_m: f64, u
     let gravity = DVec3::from(spec.world.gravity_m_s2);
     let Some(thing) = spec.objects.get(object) else { return Path::default() };
     let drives = Drives::of(spec, thing, facts);
-    let mut body = Body { at: DVec3::from(thing.offset_m), velocity: DVec3::from(thing.velocity_m_s) };
+    let waiting = spec.events.iter().filter(|e| e.object == thing.name && e.when.is_some()).cloned().collect();
+    let mut body = Body { at: DVec3::from(thing.offset_m), velocity: DVec3::from(thing.velocity_m_s), waiting, flown: false };
     let mut events: Vec<_> = spec.events.iter().filter(|e| e.object == thing.name).collect();
     events.sort_by(|a, b| a.at_s.unwrap_or(until_s).total_cmp(&b.at_s.unwrap_or(until_s)));
-    let mut path = Path { points: vec![body.at], rests_s: 0.0 };
+    let mut path = Path { points: vec![body.at], ..Path::default() };
     let mut now = 0.0;
     let ground = Ground { spec, restitution: restitution(thing, spec), facts, ground_m, gravity };
     for (event, at_s) in events.into_iter().filter_map(|event| Some((event, event.at_s?))) {
         travel(&mut body, now, at_s.min(until_s), &ground, &drives, &mut path);
         now = at_s;
-        body.velocity = event.velocity_m_s.map_or(body.velocity, DVec3::from) + event.push_m_s.map_or(DVec3::ZERO, DVec3::from);
+        body.push(event);
     }
     travel(&mut body, now, until_s.max(now), &ground, &drives, &mut path);
     path.rests_s = path.rests_s.max(drives.end_s().min(until_s));
+    let changed = spec.events.iter().filter(|e| e.object == thing.name && e.effects() != ["push_m_s"]).filter_map(|e| e.at_s);
+    path.rests_s = path.rests_s.max(changed.fold(0.0, f64::max).min(until_s));
+    if let Some(flow) = spread::of(spec, thing, facts, path.lands_s, until_s) {
+        path.rests_s = path.rests_s.max(flow.until_s.min(until_s));
+        path.puddle = Some((body.at, flow.radius_m));
+    }
     path
 }
 
@@ -134,6 +155,10 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Dri
         let change = drives.change(body, now, step_s);
         body.velocity += change;
         let lifted = change.z + gravity.z * step_s > 0.0;
+        body.flown |= body.at.z > floor + 1e-3;
+        if body.at.z <= floor + 1e-3 {
+            path.lands_s = path.lands_s.or(Some(now));
+        }
         let flying = body.at.z > floor + 1e-4 || body.velocity.z > 1e-3 || gravity.z >= 0.0 || lifted;
         if flying {
             body.velocity += gravity * step_s;
@@ -154,6 +179,9 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Dri
             body.at.z = floor;
             let back_m_s = -body.velocity.z * ground.restitution;
             body.velocity.z = if back_m_s > LEAST_BOUNCE_M_S { back_m_s } else { 0.0 };
+            if std::mem::take(&mut body.flown) {
+                std::mem::take(&mut body.waiting).iter().for_each(|event| body.push(event));
+            }
         }
         now += step_s;
         path.points.push(body.at);
@@ -231,6 +259,15 @@ mod tests {
         spec.objects[0].velocity_m_s = [0.0, 2.0, 0.0];
         assert!((lowest(&spec) + 0.5).abs() < 1e-9);
         assert!(duration_s(&spec, &facts(), -0.5) > stays_s);
+    }
+
+    #[test]
+    fn a_push_on_impact_comes_with_the_landing() {
+        let mut spec = spec();
+        spec.objects[0].offset_m = [0.0, 0.0, 0.5];
+        spec.events.push(Event { push_m_s: Some([2.0, 0.0, 0.0]), ..Event::on_impact("push", "vase") });
+        let points = predict(&spec, 0, &facts()[0], 0.0, 4.0).points;
+        assert!(points.iter().filter(|p| p.z > 0.05).all(|p| p.x == 0.0) && points[points.len() - 1].x > 0.5);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The automatic camera: behind the object and to its right, a little above, as near as it holds the predicted path.
 
 use super::ballistics::{self, Path};
-use super::{ObjectFacts, Prepared};
+use super::{ObjectFacts, Prepared, support_below};
 use crate::spec::{Auto, Camera, Spec};
 use glam::DVec3;
 
@@ -16,6 +16,8 @@ const FOV_DEG: f64 = 45.0;
 const FILL: f64 = 0.88;
 /// How far along the ground a path is followed, in longest sides of the object: a picture of a longer one shows a speck.
 const FAR_SIZES: f64 = 2.5;
+/// How far from its middle what flows is followed, in longest sides: what runs on farther is a film on the ground.
+const PUDDLE_SIZES: f64 = 0.8;
 /// A Gaussian is seen as far from its centre, in its largest standard deviations.
 const SEEN_SIGMAS: f32 = 1.5;
 
@@ -46,7 +48,7 @@ impl Outline {
     pub fn new(spec: &Spec, prepared: &Prepared, facts: &[ObjectFacts], duration_s: f64, far_sizes: f64) -> Outline {
         let mut points = Vec::new();
         for (index, object) in facts.iter().enumerate() {
-            let Path { points: way, .. } = ballistics::predict(spec, index, object, prepared.ground_m, duration_s);
+            let Path { points: way, puddle, .. } = ballistics::predict(spec, index, object, prepared.ground_m, duration_s);
             let size_m = (DVec3::from(object.high_m) - DVec3::from(object.low_m)).max_element();
             let start = way.first().copied().unwrap_or_default();
             let near = |shift: &&DVec3| (**shift - start).truncate().length() <= far_sizes * size_m;
@@ -61,6 +63,9 @@ impl Outline {
                 let Some(edge) = members.iter().map(reach).max_by(along) else { continue };
                 let Some(shift) = way.iter().copied().max_by(along) else { continue };
                 points.push(edge + shift);
+            }
+            if let Some((shift, radius_m)) = puddle {
+                points.extend(rim(spec, prepared, object, shift, radius_m.min(PUDDLE_SIZES * size_m)));
             }
         }
         Outline(points)
@@ -98,6 +103,16 @@ impl Outline {
         let target = eye + ((low + high) / 2.0 - eye).dot(forward).max(1e-3) * forward;
         Camera { eye_m: eye.to_array(), target_m: target.to_array(), fov_deg: FOV_DEG, orbit_deg_s: 0.0 }
     }
+}
+
+/// Points around an object that flows apart, on whatever is below each.
+fn rim(spec: &Spec, prepared: &Prepared, object: &ObjectFacts, shift: DVec3, radius_m: f64) -> impl Iterator<Item = DVec3> {
+    let (middle, low_m) = (DVec3::from(object.centre_m) + shift, object.low_m[2] + shift.z);
+    (0..8).map(move |k| {
+        let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
+        let (x, y) = (middle.x + radius_m * cos, middle.y + radius_m * sin);
+        DVec3::new(x, y, support_below(&spec.colliders, prepared.ground_m, x, y, low_m))
+    })
 }
 
 /// Right, up and forward of a camera that looks along `toward`.
@@ -196,6 +211,21 @@ mod tests {
         spec.objects[0].velocity_m_s = [0.0; 3];
         spec.objects[0].offset_m = [0.0, 0.0, 8.0];
         assert!(!resolve(&spec, &prepared, 2.0, aspect, None).leaves);
+    }
+
+    #[test]
+    fn what_flows_is_held_with_its_puddle_and_still_fills_much_of_the_picture() {
+        let (mut spec, prepared) = scene();
+        let aspect = 16.0 / 9.0;
+        let distance = |spec: &Spec| {
+            let framed = resolve(spec, &prepared, 2.0, aspect, None);
+            assert!(!framed.leaves);
+            (DVec3::from(framed.camera.eye_m) - DVec3::from(framed.camera.target_m)).length()
+        };
+        let dry = distance(&spec);
+        spec.objects[0].material = crate::spec::presets::material("water").unwrap().material.clone();
+        let wet = distance(&spec);
+        assert!(wet > 1.02 * dry && wet < 1.6 * dry, "{dry} {wet}");
     }
 
     #[test]

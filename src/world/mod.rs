@@ -15,6 +15,7 @@ mod region;
 mod resolve;
 mod seam;
 mod settings;
+mod spread;
 mod stuff;
 
 pub use alive::{Checkpoint, Step, World};

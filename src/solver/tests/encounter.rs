@@ -120,7 +120,7 @@ fn layers_meet_as_their_twins_do() {
     let mut layers: Vec<twin::Grid> = (0..3).map(|o| twin::p2g(&of(&stressed, o).copied().collect::<Vec<_>>(), &around)).collect();
     layers.iter_mut().for_each(|grid| twin::grid(grid, &around, dt_s, 0.0));
     let apart = layers.clone();
-    let surfaces = crate::solver::encounter::surfaces(&solver.settings, &states, 3);
+    let surfaces = crate::solver::encounter::surfaces(&solver.settings, &states, &solver.laws.substances, 3);
     assert_eq!(surfaces.iter().map(|s| s[0]).collect::<Vec<_>>(), [0.1, 0.5, 0.3]);
     twin::encounter::encounter(&mut layers, &surfaces, &around, dt_s);
     let met = layers.iter().flatten().zip(apart.iter().flatten()).filter(|(a, b)| (a.1.velocity - b.1.velocity).length() > 1e-3).count();
@@ -176,7 +176,7 @@ fn slide(tangent: f32, friction: f32) -> (f64, f64) {
     let lower = block(Vec3::ZERO, Vec3::new(0.4, 0.2, 0.1), SPACING_M, 1e6, 0.2);
     let upper = block(Vec3::new(0.1, 0.05, 0.1), Vec3::new(0.1, 0.1, 0.075), SPACING_M, 1e6, 0.2);
     let theta = tangent.atan();
-    let mut settings = Settings { frictions: vec![0.0, friction], ..Settings::new(CELL_M) };
+    let mut settings = Settings { frictions: vec![2.0 * friction, 0.5 * friction], ..Settings::new(CELL_M) };
     settings.gravity_m_s2 = 9.81 * Vec3::new(theta.sin(), 0.0, -theta.cos());
     settings.ground = Some(Plane { height_m: 0.0, friction: 50.0, restitution: 0.0 });
     let mut solver = solver(settings, &objects(&[lower, upper]));

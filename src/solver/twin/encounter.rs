@@ -76,7 +76,7 @@ fn meet(a: &mut Side, b: &mut Side, surfaces: &[[f32; 2]], cell_m: f64, dt_s: f6
     if ease == 0.0 || far(a) || far(b) || normal == DVec3::ZERO {
         return;
     }
-    let friction = f64::from(surfaces[a.layer][0].max(surfaces[b.layer][0]));
+    let friction = (f64::from(surfaces[a.layer][0]) * f64::from(surfaces[b.layer][0])).sqrt();
     let gap_m = cell_m * (ahead(-a.slope.dot(normal) / a.mass) + ahead(b.slope.dot(normal) / b.mass));
     let relative = a.v - b.v;
     let approach = relative.dot(normal);

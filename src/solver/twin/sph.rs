@@ -203,7 +203,8 @@ pub fn forces(all: &[Particle], around: &Surroundings, dt_s: f64, viscous: bool)
             let second = derivative(|r| derivative(weight, r), q);
             let hessian = pull * (first / q) + along * ((second - first / q) * pull.dot(along));
             let push = strength * (1.0 - q / apart).max(0.0) - f64::from(COHESION) * (1.0 - q).powi(2) * (q - apart).max(0.0);
-            sum += along * (push * 0.5 * (me.tension + other.tension) / me.volume) - hessian * (f64::from(TENSION) * other.volume);
+            let share = 8.0 * (other.volume / me.volume).min(1.0);
+            sum += along * (push * 0.5 * (me.tension + other.tension) * share) - hessian * (f64::from(TENSION) * other.volume);
             let approach = (me.v - other.v).dot(along);
             let eddy = f64::from(EDDIES) * cell * approach.abs() * 2.0 / (me.lightness + other.lightness);
             let eta = eddy + if viscous { pair_viscosity(me, other) } else { 0.0 };

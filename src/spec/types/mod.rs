@@ -3,6 +3,7 @@
 mod activation;
 mod around;
 mod event;
+mod field;
 mod force;
 mod material;
 mod object;
@@ -13,6 +14,7 @@ mod view;
 pub use activation::*;
 pub use around::*;
 pub use event::*;
+pub use field::*;
 pub use force::*;
 pub use material::*;
 pub use object::*;

@@ -7,6 +7,7 @@ use super::super::say;
 use super::super::sense::{Direction, Preposition, Property, Sense, Verb, View};
 use glam::{DQuat, DVec3};
 use phystalk::spec::{Auto, Camera};
+use phystalk::world::ballistics;
 
 /// Seen from a side, the camera stands so much above the level, degrees; what "from above" leaves to the vertical, and
 /// "from below" to the ground.
@@ -17,6 +18,11 @@ const BELOW_ELEVATION_DEG: f64 = 2.0;
 pub const ORBIT_DEG_S: f64 = 45.0;
 /// "Move the camera to the left" and nothing more, degrees about the target.
 pub const STEP_DEG: f64 = 30.0;
+
+/// Share of the half-picture that what moves may fill.
+const FILL: f64 = 0.95;
+/// How far a way is followed, in longest sides of the object.
+const FAR_SIZES: f64 = 2.5;
 
 /// Whether a clause is about the camera, whatever its verb.
 pub fn is_about_camera(clause: &Clause) -> bool {
@@ -77,9 +83,18 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
         camera.target_m = say::tidy3(middle);
         said.push(format!("looks at {}", facts.name));
     }
-    views(clause, draft, object, &mut around, &mut said);
-    distance(clause, &mut around, &mut said);
+    let turned = views(clause, draft, object, &mut around, &mut said);
+    let asked = clause.has(|s| matches!(s, Sense::Measure(..) | Sense::Factor(_)));
     field_of_view(clause, &mut camera, &mut said);
+    let before_m = around.distance_m;
+    distance(clause, &mut around, &mut said);
+    // Nobody who says "from above and closer" wants half of it: a number is what goes nearer than that.
+    let least_m = least_distance(draft, &camera, around);
+    if !asked && around.distance_m < least_m && (turned || before_m > 1.01 * least_m) {
+        around.distance_m = least_m;
+        said.retain(|words| !words.ends_with(" away"));
+        said.push(format!("is {} away, as near as it holds all that is predicted to move", say::metres(least_m)));
+    }
     orbit(clause, draft.duration_s(), &mut camera, &mut around, &mut said);
     step(clause, &mut around, &mut said);
     if said.is_empty() {
@@ -97,14 +112,42 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     Ok(())
 }
 
-/// "from above", "from the left", "from behind and above".
-fn views(clause: &mut Clause, draft: &Draft, object: usize, around: &mut Around, said: &mut Vec<String>) {
+/// The nearest that a camera which looks from there at its target holds all objects on their predicted ways.
+fn least_distance(draft: &Draft, camera: &Camera, around: Around) -> f64 {
+    let out = Around { distance_m: 1.0, ..around }.eye([0.0; 3]);
+    let right = (-out).cross(DVec3::Z).try_normalize().unwrap_or(DVec3::X);
+    let up = right.cross(-out);
+    let [width, height] = draft.spec.output.size.unwrap_or([16, 9]).map(f64::from);
+    let half = FILL * (camera.fov_deg.to_radians() / 2.0).tan();
+    let target = DVec3::from_array(camera.target_m);
+    let needed = |point: DVec3| {
+        let p = point - target;
+        (p.dot(right).abs() * height / width).max(p.dot(up).abs()) / half + p.dot(out)
+    };
+    (0..draft.spec.objects.len()).flat_map(|object| corners(draft, object)).map(needed).fold(0.0, f64::max)
+}
+
+/// Corners of the boxes around an object where it is farthest out on its predicted way.
+fn corners(draft: &Draft, object: usize) -> Vec<DVec3> {
+    let facts = draft.facts(object);
+    let (low, high) = (DVec3::from_array(facts.low_m), DVec3::from_array(facts.high_m));
+    let far_m = FAR_SIZES * (high - low).max_element();
+    let way = ballistics::predict(&draft.spec, object, &facts, draft.context.facts.ground_m, draft.duration_s()).points;
+    let start = way.first().copied().unwrap_or_default();
+    let near = way.into_iter().filter(|shift| (*shift - start).truncate().length() <= far_m);
+    let (least, most) = near.fold((start, start), |(least, most), shift| (least.min(shift), most.max(shift)));
+    let (low, high) = (low + least, high + most);
+    (0..8).map(|k| DVec3::from_array([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] }))).collect()
+}
+
+/// "from above", "from the left", "from behind and above". Whether there was a side.
+fn views(clause: &mut Clause, draft: &Draft, object: usize, around: &mut Around, said: &mut Vec<String>) -> bool {
     let views = clause.take_all(|s| match s {
         Sense::View(view) => Some(*view),
         _ => None,
     });
     if views.is_empty() || draft.spec.objects.is_empty() {
-        return;
+        return false;
     }
     let frame = draft.frame(object);
     let level: DVec3 = views.iter().filter_map(|v| frame.side(*v)).map(|side| side.with_z(0.0)).sum();
@@ -135,6 +178,7 @@ fn views(clause: &mut Clause, draft: &Draft, object: usize, around: &mut Around,
         })
         .collect();
     said.push(format!("stands {}", say::list(&names)));
+    true
 }
 
 /// "closer", "at 2 m", "zoom out", "twice as far".
