@@ -187,6 +187,15 @@ fn amounts(page: &mut String) {
             format!("a factor of {}; \"a bit\" its square root, \"much\" its square", step(Property::Stiffness)),
         ),
         ("higher, faster, stronger, longer, closer", format!("a factor of {}", step(Property::Height))),
+        (
+            "thicker, holds together more, spreads more, stickier",
+            format!("a factor of {}, and at least what shows in a thing of that size", step(Property::Viscosity)),
+        ),
+        ("wetter", format!("a factor of {} of the cohesion, and at least a tenth of the pressure at its foot", step(Property::Cohesion))),
+        ("a melt", "a liquid of the same density that takes about 0.2 s to sink together, whatever its size".to_owned()),
+        ("the flowers, the pot", "what is above and below the height at which the scene's colours change most".to_owned()),
+        ("the top, the bottom", "a third of the height where they are of other stuff, a twentieth where they are held".to_owned()),
+        ("closer, seen from a side", "never so near that what is predicted to move leaves the picture, unless a number says so".to_owned()),
         ("a material's stiffness before the first run", say::pressure(stuff::YOUNG_BEFORE_RUN_PA)),
         ("an orbit, a step of the camera", format!("{}° a second, {}°", camera::ORBIT_DEG_S, camera::STEP_DEG)),
     ];
