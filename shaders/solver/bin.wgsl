@@ -20,7 +20,7 @@ fn reach(low: vec3<u32>, high: vec3<u32>, layer: u32) {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocation_id) lane: u32) {
     if (id.x >= params.count) {
         return;
     }
@@ -30,7 +30,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!in_window(first - slack) || !in_window(first + slack)) {
         atomicStore(&control.window, 1u);
     }
-    atomicAdd(&block_info[2u * block_number(clamped_cell(first) >> vec3<u32>(2u), sorted_into(tag))], 1u);
+    // Neighbours mostly share a block since the last sort.
+    let block = block_number(clamped_cell(first) >> vec3<u32>(2u), sorted_into(tag));
+    if (subgroupAll(block == subgroupBroadcastFirst(block))) {
+        let together = subgroupAdd(1u);
+        if (lane == subgroupMin(lane)) {
+            atomicAdd(&block_info[2u * block], together);
+        }
+    } else {
+        atomicAdd(&block_info[2u * block], 1u);
+    }
     let low = clamped_cell(first - slack) >> vec3<u32>(2u);
     let high = clamped_cell(first + vec3<i32>(2) + slack) >> vec3<u32>(2u);
     reach(low, high, layer_of(tag));

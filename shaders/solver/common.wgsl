@@ -47,6 +47,13 @@ struct Params {
     layers: u32,
     // 1 where the first layer also stores the blocks of all others: liquids share it.
     pools: u32,
+    // Particles that one workgroup takes, where workgroups go by block.
+    item_particles: u32,
+    // 1 where those of an item that lie in one cell are kept apart.
+    mixes: u32,
+    // 1.5 * 2^23, which takes the fraction from what is added to it. A constant would be added to other
+    // constants first.
+    rounder: f32,
     // Where each block of the window is stored, layer after layer.
     slots: array<u32>,
 }
@@ -67,6 +74,19 @@ fn block_number(block: vec3<u32>, layer: u32) -> u32 {
     return ((layer * params.blocks.z + block.z) * params.blocks.y + block.y) * params.blocks.x + block.x;
 }
 
+// Back from the number: the block's first node from the window's, and its layer.
+struct Block {
+    corner: vec3<i32>,
+    layer: u32,
+}
+
+fn block_of(number: u32) -> Block {
+    let slab = number / params.blocks.x;
+    let deep = slab / params.blocks.y;
+    let block = vec3<u32>(number % params.blocks.x, slab % params.blocks.y, deep % params.blocks.z);
+    return Block(vec3<i32>(4u * block), deep / params.blocks.z);
+}
+
 // Where a cell, or the node at its lowest corner, is stored.
 fn stored(cell: vec3<u32>, layer: u32) -> u32 {
     let inner = cell & vec3<u32>(3u);
@@ -82,6 +102,23 @@ fn base_node(x: vec3<f32>) -> vec3<i32> {
 fn in_window(first: vec3<i32>) -> bool {
     let last = vec3<i32>(params.blocks * 4u) - vec3<i32>(4);
     return all(first >= vec3<i32>(1)) && all(first <= last);
+}
+
+// Weights of the quadratic B-spline along each axis, for a place from the first of its nodes in cells.
+struct Weights {
+    x: vec3<f32>,
+    y: vec3<f32>,
+    z: vec3<f32>,
+}
+
+fn spline(place: vec3<f32>) -> Weights {
+    let a = vec3<f32>(1.5) - place;
+    let b = place - vec3<f32>(1.0);
+    let c = place - vec3<f32>(0.5);
+    let w0 = 0.5 * a * a;
+    let w1 = vec3<f32>(0.75) - b * b;
+    let w2 = 0.5 * c * c;
+    return Weights(vec3<f32>(w0.x, w1.x, w2.x), vec3<f32>(w0.y, w1.y, w2.y), vec3<f32>(w0.z, w1.z, w2.z));
 }
 
 // The 3^3 nodes that a particle exchanges with: weights of the quadratic B-spline, the particle's place
@@ -110,21 +147,16 @@ struct Stencil {
 // In the first layer; `cell` is the first node, from the window's.
 fn stencil(x: vec3<f32>, base: vec3<i32>, cell: vec3<u32>) -> Stencil {
     let place = x * params.per_m - vec3<f32>(base);
-    let a = vec3<f32>(1.5) - place;
-    let b = place - vec3<f32>(1.0);
-    let c = place - vec3<f32>(0.5);
-    let w0 = 0.5 * a * a;
-    let w1 = vec3<f32>(0.75) - b * b;
-    let w2 = 0.5 * c * c;
+    let w = spline(place);
     let first = cell & vec3<u32>(3u);
     let steps = vec3<u32>(0u, 1u, 2u);
     let nx = first.x + steps;
     let ny = first.y + steps;
     let nz = first.z + steps;
     let s = Stencil(
-        vec3<f32>(w0.x, w1.x, w2.x),
-        vec3<f32>(w0.y, w1.y, w2.y),
-        vec3<f32>(w0.z, w1.z, w2.z),
+        w.x,
+        w.y,
+        w.z,
         place,
         cell,
         nx & vec3<u32>(3u),

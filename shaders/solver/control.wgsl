@@ -1,8 +1,8 @@
 // Numbers that passes hand on to each other and to the watch at the end of a segment.
 
 struct Control {
-    // Bits of the largest measure of momentum of any particle, for even and odd substeps.
-    momentum: array<atomic<u32>, 2>,
+    // Bits of the largest measure of momentum of any particle at the start of a substep, for four of them in turn.
+    momentum: array<atomic<u32>, 4>,
     // Bits of the largest speed since the watch was reset.
     speed: atomic<u32>,
     // 1 where a fixed-point sum came near its range.
@@ -33,8 +33,10 @@ struct Control {
     blocks: atomic<u32>,
 }
 
-// Power of two that brings momenta up to `largest` to `momentum_bits`.
-fn momentum_units(largest: f32) -> f32 {
-    let exponent = (bitcast<u32>(max(largest, params.momentum_floor)) >> 23u) + 1u;
+// Power of two that brings the momenta of a substep to `momentum_bits`. Where the sums are made before all
+// of them are known, those of the substep before have to do, with `lag` bits to spare.
+fn momentum_units(time: u32, lag: u32) -> f32 {
+    let largest = bitcast<f32>(atomicLoad(&control.momentum[(time - lag) & 3u]));
+    let exponent = (bitcast<u32>(max(largest, params.momentum_floor)) >> 23u) + 1u + lag;
     return bitcast<f32>((254u + params.momentum_bits - min(exponent, 254u)) << 23u);
 }

@@ -28,10 +28,15 @@ struct Side {
 
 // Gradient of a layer's mass: central differences, smoothed (1 2 1) / 4 across.
 fn mass_slope(layer: u32, cell: vec3<i32>) -> vec3<f32> {
+    let low = vec3<u32>(clamp(cell - vec3<i32>(1), vec3<i32>(0), vec3<i32>(params.blocks * 4u) - vec3<i32>(3)));
+    let s = in_layer(stencil(vec3<f32>(0.0), vec3<i32>(0), low), layer);
     var sum = vec3<f32>(0.0);
-    for (var k = 0u; k < 27u; k++) {
-        let step = step_of(k);
-        sum += slope(step) * abs(masses[beside(Node(0u, cell, layer), step)]);
+    for (var k = 0u; k < 9u; k++) {
+        let nodes = row(s, k).nodes;
+        let step = vec3<i32>(0, vec2<i32>(vec2<u32>(k % 3u, k / 3u)) - vec2<i32>(1));
+        sum += slope(step - vec3<i32>(1, 0, 0)) * abs(masses[nodes.x]);
+        sum += slope(step) * abs(masses[nodes.y]);
+        sum += slope(step + vec3<i32>(1, 0, 0)) * abs(masses[nodes.z]);
     }
     return sum;
 }
@@ -79,6 +84,38 @@ fn meet(a: ptr<function, Side>, b: ptr<function, Side>) {
     (*b).v += impulse * (*b).ease;
 }
 
+fn side_of(layer: u32, cell: vec3<i32>) -> Side {
+    let node = stored(vec3<u32>(cell), layer);
+    let mass = masses[node];
+    return Side(layer, node, velocity[node].xyz, abs(mass), select(0.0, 1.0 / mass, mass > 0.0), mass_slope(layer, cell));
+}
+
+// More than two that meet at a node. What one pair settles another may upset.
+fn meet_all(first_layer: u32, cell: vec3<i32>) {
+    var sides: array<Side, MOST_LAYERS>;
+    var count = 0u;
+    for (var layer = first_layer; layer < params.layers; layer++) {
+        if (masses[stored(vec3<u32>(cell), layer)] != 0.0) {
+            sides[count] = side_of(layer, cell);
+            count++;
+        }
+    }
+    for (var round = 0u; round < MEETING_ROUNDS; round++) {
+        for (var i = 0u; i + 1u < count; i++) {
+            for (var j = i + 1u; j < count; j++) {
+                var a = sides[i];
+                var b = sides[j];
+                meet(&a, &b);
+                sides[i].v = a.v;
+                sides[j].v = b.v;
+            }
+        }
+    }
+    for (var k = 0u; k < count; k++) {
+        velocity[sides[k].node] = vec4<f32>(sides[k].v, 0.0);
+    }
+}
+
 @compute @workgroup_size(64)
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
     let place = group.y * GROUPS_ACROSS + group.x;
@@ -92,36 +129,23 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
             return;
         }
     }
-    var sides: array<Side, MOST_LAYERS>;
     var count = 0u;
+    var first_layer = 0u;
+    var last_layer = 0u;
     for (var layer = own.layer; layer < params.layers; layer++) {
-        let node = stored(vec3<u32>(own.cell), layer);
-        let mass = masses[node];
-        if (mass != 0.0) {
-            sides[count] = Side(layer, node, velocity[node].xyz, abs(mass), select(0.0, 1.0 / mass, mass > 0.0), vec3<f32>(0.0));
+        if (masses[stored(vec3<u32>(own.cell), layer)] != 0.0) {
+            first_layer = select(first_layer, layer, count == 0u);
+            last_layer = layer;
             count++;
         }
     }
-    if (count < 2u) {
-        return;
-    }
-    for (var k = 0u; k < count; k++) {
-        sides[k].slope = mass_slope(sides[k].layer, own.cell);
-    }
-    // What one pair settles another may upset.
-    let rounds = select(MEETING_ROUNDS, 1u, count == 2u);
-    for (var round = 0u; round < rounds; round++) {
-        for (var i = 0u; i + 1u < count; i++) {
-            for (var j = i + 1u; j < count; j++) {
-                var a = sides[i];
-                var b = sides[j];
-                meet(&a, &b);
-                sides[i].v = a.v;
-                sides[j].v = b.v;
-            }
-        }
-    }
-    for (var k = 0u; k < count; k++) {
-        velocity[sides[k].node] = vec4<f32>(sides[k].v, 0.0);
+    if (count == 2u) {
+        var a = side_of(first_layer, own.cell);
+        var b = side_of(last_layer, own.cell);
+        meet(&a, &b);
+        velocity[a.node] = vec4<f32>(a.v, 0.0);
+        velocity[b.node] = vec4<f32>(b.v, 0.0);
+    } else if (count > 2u) {
+        meet_all(first_layer, own.cell);
     }
 }

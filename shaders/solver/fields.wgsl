@@ -124,7 +124,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let momentum_most = subgroupMax(bitcast<u32>(momentum) & 0x7fffffffu);
     let speed_most = subgroupMax(bitcast<u32>(length(v)) & 0x7fffffffu);
     if (lane == 0u) {
-        let slot = (substep.index + 1u) & 1u;
+        let slot = (substep.index + 1u) & 3u;
         if (momentum_most > atomicLoad(&control.momentum[slot])) {
             atomicMax(&control.momentum[slot], momentum_most);
         }

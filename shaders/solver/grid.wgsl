@@ -59,7 +59,7 @@ fn settle(at: Node) {
     if (any(abs(sum) > vec4<i32>(1 << 30))) {
         atomicStore(&control.overflow, 1u);
     }
-    let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
+    let momentum_unit = momentum_units(substep.index, substep.lag);
     var v = vec3<f32>(sum.xyz) * (params.mass_units / momentum_unit) / f32(sum.w);
     let x = position_of(at);
     v += substep.dt_s * (params.gravity_m_s2 + liquid_pull(at).xyz);
@@ -88,7 +88,7 @@ fn settle(at: Node) {
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
     let place = group.y * GROUPS_ACROSS + group.x;
     if (place == 0u && lane == 0u) {
-        atomicStore(&control.momentum[(substep.index + 1u) & 1u], 0u);
+        atomicStore(&control.momentum[(substep.index + 1u) & 3u], 0u);
     }
     if (place >= active_blocks[0]) {
         return;

@@ -11,11 +11,8 @@ struct Node {
 // One of the 64 of an active block, `place` along the list of them.
 fn node_of(place: u32, lane: u32) -> Node {
     let inner = vec3<u32>(lane & 3u, (lane >> 2u) & 3u, lane >> 4u);
-    let block = active_blocks[1u + place];
-    let slab = block / params.blocks.x;
-    let deep = slab / params.blocks.y;
-    let corner = 4u * vec3<u32>(block % params.blocks.x, slab % params.blocks.y, deep % params.blocks.z);
-    return Node((1u + place) * 64u + lane, vec3<i32>(corner + inner), deep / params.blocks.z);
+    let block = block_of(active_blocks[1u + place]);
+    return Node((1u + place) * 64u + lane, block.corner + vec3<i32>(inner), block.layer);
 }
 
 fn position_of(node: Node) -> vec3<f32> {

@@ -17,11 +17,6 @@
 @group(0) @binding(7) var<storage, read> substances: array<Substance>;
 var<immediate> substep: Substep;
 
-// Liquids of smoothed particles have no part in the grid.
-fn on_grid(i: u32) -> bool {
-    return params.has_liquid == 0u || substances[row_of(bitcast<u32>(matter[3u * params.count + i].y))].kind != SPH_LIQUID;
-}
-
 // Lane in which the run of equal keys that this lane belongs to begins.
 fn run_start(starts: vec4<u32>, lane: u32) -> u32 {
     var word = lane >> 5u;
@@ -31,32 +26,6 @@ fn run_start(starts: vec4<u32>, lane: u32) -> u32 {
         bits = starts[word];
     }
     return word * 32u + firstLeadingBit(max(bits, 1u));
-}
-
-struct Near {
-    mark: u32,
-    normal: vec3<f32>,
-}
-
-// The mark of the nearest of a span of colliders, 0 where none is in reach.
-fn nearest(first: u32, end: u32, i: u32, x: vec3<f32>) -> Near {
-    var near = Near(0u, vec3<f32>(0.0));
-    for (var c = first; c < end; c++) {
-        let t = touch(colliders[c], x);
-        if (t.distance_m > params.reach_m + REST_CELLS_MAX * params.cell_m) {
-            continue;
-        }
-        let gap_m = t.distance_m - matter[3u * params.count + i].z;
-        if (gap_m < params.reach_m) {
-            // Without a shear modulus there is no Coulomb friction either.
-            let slips = select(0u, SLIPS, matter[i].w == 0.0);
-            let mark = pack_mark(gap_m, (c * 8u + t.face) | slips);
-            if (mark > near.mark) {
-                near = Near(mark, surface_normal(colliders[c], t.face, x));
-            }
-        }
-    }
-    return near;
 }
 
 // What a lane knows while it adds up its stencil.
@@ -76,20 +45,6 @@ struct Lane {
 fn behind_by(sum: vec4<f32>, step: u32, behind: u32) -> vec4<f32> {
     let before = subgroupShuffleUp(sum, step);
     return sum + select(vec4<f32>(0.0), before, behind >= step);
-}
-
-// Only the nodes beside and below the particle carry its contact: those above it are the body's own, and
-// the layer that they would stiffen is half a cell thinner without them. Those above a liquid are told that
-// it is there: a mark from out of reach stops nothing.
-fn leave_mark(slot: u32, near: Near, d: vec3<f32>) {
-    if (near.mark == 0u) {
-        return;
-    }
-    if (dot(near.normal, d) <= 0.5) {
-        atomicMax(&marks[slot], near.mark);
-    } else if ((near.mark & SLIPS) != 0u) {
-        atomicMax(&marks[slot], pack_mark(params.reach_m, near.mark & 2047u));
-    }
 }
 
 // Adds what the particle gives to one node, `d` cells away; the widest sum that it rounded.
@@ -113,8 +68,14 @@ fn deposit(l: Lane, node: u32, weight: f32, d: vec3<f32>, number: u32) -> f32 {
         atomicAdd(&sums[4u * node + 3u], whole.w);
         widest = max(max(abs(sum.x), abs(sum.y)), max(abs(sum.z), sum.w));
     }
-    leave_mark(2u * node, l.ground, d);
-    leave_mark(2u * node + 1u, l.solid, d);
+    let ground = mark_on(l.ground, d);
+    let solid = mark_on(l.solid, d);
+    if (ground != 0u) {
+        atomicMax(&marks[2u * node], ground);
+    }
+    if (solid != 0u) {
+        atomicMax(&marks[2u * node + 1u], solid);
+    }
     return widest;
 }
 
@@ -134,15 +95,16 @@ fn main(
     if (!inside) {
         atomicStore(&control.window, 1u);
     }
-    let tag = bitcast<u32>(matter[3u * params.count + i].y);
-    let counts = alive && inside && on_grid(i) && !is_rigid(tag);
+    let label = matter[3u * params.count + i];
+    let tag = bitcast<u32>(label.y);
+    let counts = alive && inside && on_grid(tag);
     let s = in_layer(stencil(x, base, vec3<u32>(max(first, vec3<i32>(0)))), tag);
     let key = select(0xffffffffu, row(s, 0u).nodes.x, counts);
     let starts = subgroupBallot(lane == 0u || subgroupShuffleUp(key, 1u) != key);
     let last = lane + 1u == lanes || ((starts[(lane + 1u) >> 5u] >> ((lane + 1u) & 31u)) & 1u) != 0u;
 
     var l: Lane;
-    let unit = select(0.0, momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u]))), counts);
+    let unit = select(0.0, momentum_units(substep.index, substep.lag), counts);
     l.pull = position.w * kinematics[params.count + i].xyz * unit;
     l.spread = read_affine(i) * (unit * params.cell_m);
     l.mass_units = select(0.0, position.w * params.mass_units, counts);
@@ -153,8 +115,9 @@ fn main(
     l.ground = Near(0u, vec3<f32>(0.0));
     l.solid = Near(0u, vec3<f32>(0.0));
     if (counts) {
-        l.ground = nearest(0u, params.has_ground, i, x);
-        l.solid = nearest(params.has_ground, params.collider_count, i, x);
+        let shears = matter[i].w != 0.0;
+        l.ground = nearest(0u, params.has_ground, x, label.z, shears);
+        l.solid = nearest(params.has_ground, params.collider_count, x, label.z, shears);
     }
     var widest = 0.0;
     for (var k = 0u; k < 9u; k++) {

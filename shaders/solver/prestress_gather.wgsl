@@ -77,6 +77,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     }
     let most = subgroupMax(bitcast<u32>(momentum_measure(position.w, v, affine)));
     if (lane == 0u) {
-        atomicMax(&control.momentum[(substep.index + 1u) & 1u], most);
+        atomicMax(&control.momentum[(substep.index + 1u) & 3u], most);
     }
 }

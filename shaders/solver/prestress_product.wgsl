@@ -13,7 +13,7 @@ var<immediate> substep: Substep;
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
     let place = group.y * GROUPS_ACROSS + group.x;
     if (place == 0u && lane == 0u) {
-        atomicStore(&control.momentum[(substep.index + 1u) & 1u], 0u);
+        atomicStore(&control.momentum[(substep.index + 1u) & 3u], 0u);
     }
     let alive = place < active_blocks[0];
     let count = active_blocks[0] * 64u;
@@ -24,7 +24,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         let sum = sums[node];
         sums[node] = vec4<i32>(0);
         marks[node] = vec2<u32>(0u);
-        let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
+        let momentum_unit = momentum_units(substep.index, substep.lag);
         let product = hold(vec3<f32>(sum.xyz) / -momentum_unit, nodes[BOUND * count + k]);
         nodes[PRODUCT * count + k] = vec4<f32>(product, 0.0);
         share = vec4<f32>(dot(product, nodes[DIRECTION * count + k].xyz), 0.0, 0.0, 0.0);

@@ -38,7 +38,7 @@ fn support(mark: u32, x: vec3<f32>) -> vec4<f32> {
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
     let place = group.y * GROUPS_ACROSS + group.x;
     if (place == 0u && lane == 0u) {
-        atomicStore(&control.momentum[(substep.index + 1u) & 1u], 0u);
+        atomicStore(&control.momentum[(substep.index + 1u) & 3u], 0u);
     }
     let alive = place < active_blocks[0];
     let count = active_blocks[0] * 64u;
@@ -51,7 +51,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         let mark = marks[node];
         sums[node] = vec4<i32>(0);
         marks[node] = vec2<u32>(0u);
-        let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
+        let momentum_unit = momentum_units(substep.index, substep.lag);
         // Nodes that particles hardly reach are lost in the rounding: they are conditioned as heavier
         // ones and left out of the measure.
         let mass = select(0.0, max(f32(sum.w), LIGHTEST) / params.mass_units, sum.w > 0);

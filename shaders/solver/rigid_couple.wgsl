@@ -33,7 +33,7 @@ fn respond(node: u32, x: vec3<f32>) {
         let kept = select(0.0, 1.0 - grip / max(speed, 1e-20), speed > grip);
         after = body_v + meeting.normal * meeting.allowed_m_s + sliding * kept;
     }
-    let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
+    let momentum_unit = momentum_units(substep.index, substep.lag);
     let change = vec3<i32>(round(meeting.soft_kg * (after - v) * momentum_unit));
     sums[node] += vec4<i32>(change, 0);
     meetings[node].impulse = vec3<f32>(-change) / momentum_unit;

@@ -37,6 +37,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     matter[2u * n + i] = vec4<f32>(rows[2], matter[2u * n + i].w);
     // What it may hand to a node of soft matter, as the heaviest particle would.
     let heaviest = 1000.0 * params.momentum_floor;
-    atomicMax(&control.momentum[(substep.index + 1u) & 1u], bitcast<u32>(heaviest * length(v)) & 0x7fffffffu);
+    atomicMax(&control.momentum[(substep.index + 1u) & 3u], bitcast<u32>(heaviest * length(v)) & 0x7fffffffu);
     atomicMax(&control.speed, bitcast<u32>(length(v)) & 0x7fffffffu);
 }

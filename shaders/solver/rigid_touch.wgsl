@@ -26,7 +26,7 @@ fn settle(node: u32, x: vec3<f32>) {
     if (near.rigid == 0u || sum.w <= 0 || (near.contact | near.bond) == 0u) {
         return;
     }
-    let momentum_unit = momentum_units(bitcast<f32>(atomicLoad(&control.momentum[substep.index & 1u])));
+    let momentum_unit = momentum_units(substep.index, substep.lag);
     let soft_kg = f32(sum.w) / params.mass_units;
     let rigid_kg = f32(near.rigid) / params.mass_units;
     let momentum = vec3<f32>(sum.xyz) / momentum_unit;

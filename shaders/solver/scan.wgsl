@@ -1,9 +1,14 @@
 // Sums over one workgroup, in a fixed order.
 
-var<workgroup> lanes: array<vec2<u32>, SCAN_LANES>;
+var<workgroup> lanes: array<vec3<u32>, SCAN_LANES>;
 
-// Exclusive prefix sum; `.zw` of what it returns is the total.
-fn scan(lane: u32, value: vec2<u32>) -> vec4<u32> {
+struct Scanned {
+    before: vec3<u32>,
+    total: vec3<u32>,
+}
+
+// Exclusive prefix sum.
+fn scan(lane: u32, value: vec3<u32>) -> Scanned {
     lanes[lane] = value;
     workgroupBarrier();
     for (var step = 1u; step < SCAN_LANES; step <<= 1u) {
@@ -18,5 +23,5 @@ fn scan(lane: u32, value: vec2<u32>) -> vec4<u32> {
     let total = lanes[SCAN_LANES - 1u];
     let before = lanes[lane] - value;
     workgroupBarrier();
-    return vec4<u32>(before, total);
+    return Scanned(before, total);
 }

@@ -12,8 +12,8 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     let place = group.y * GROUPS_ACROSS + group.x;
     let slot = 1u + min(place, active_blocks[0] - 1u);
     let cell = slot * 64u + lane;
-    let scanned = scan(lane, vec2<u32>(cell_count[cell], 0u));
-    let start = block_start[slot] + scanned.x;
+    let scanned = scan(lane, vec3<u32>(cell_count[cell], 0u, 0u));
+    let start = block_start[slot] + scanned.before.x;
     cell_start[cell] = start;
     cell_end[cell] = start + cell_count[cell];
 }

@@ -61,8 +61,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let momentum_most = subgroupMax(bitcast<u32>(momentum) & 0x7fffffffu);
     let speed_most = subgroupMax(bitcast<u32>(speed) & 0x7fffffffu);
     if (lane == 0u) {
-        if (momentum_most > atomicLoad(&control.momentum[substep.index & 1u])) {
-            atomicMax(&control.momentum[substep.index & 1u], momentum_most);
+        if (momentum_most > atomicLoad(&control.momentum[substep.index & 3u])) {
+            atomicMax(&control.momentum[substep.index & 3u], momentum_most);
         }
         if (speed_most > atomicLoad(&control.speed)) {
             atomicMax(&control.speed, speed_most);

@@ -24,5 +24,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let affine = read_affine(i) - weight * tau;
     let v = kinematics[n + i].xyz;
     write_motion(i, v, affine);
-    atomicMax(&control.momentum[substep.index & 1u], bitcast<u32>(momentum_measure(kinematics[i].w, v, affine)));
+    atomicMax(&control.momentum[substep.index & 3u], bitcast<u32>(momentum_measure(kinematics[i].w, v, affine)));
 }

@@ -9,4 +9,6 @@ struct Substep {
     job: u32,
     // Seconds from the start of the segment to the start of this substep.
     since_s: f32,
+    // 1 where the pass that ended the substep before also summed for this one.
+    lag: u32,
 }

@@ -9,6 +9,7 @@ use super::liquid::LiquidBound;
 use super::obstacles;
 use super::rigid::RigidBound;
 use super::sph::SphBound;
+use super::transfer::TransferBound;
 use super::types::{Advance, SolverError};
 use super::watch::{Control, Watch};
 use crate::Stop;
@@ -25,6 +26,7 @@ pub(super) struct Substep {
     pub index: u32,
     pub job: u32,
     pub since_s: f32,
+    pub lag: u32,
 }
 
 /// How a segment is cut into substeps.
@@ -69,8 +71,11 @@ const HALVINGS: u32 = 3;
 const SOFTENINGS: u32 = 3;
 /// Cells that anything may travel in one segment.
 const SEGMENT_CELLS: f64 = 32.0;
-/// Sorting is amortised over at most so many substeps; runs of equal cells break up meanwhile.
+/// Sorting is amortised over at most so many substeps. Runs of equal cells break up meanwhile, and what
+/// liquids find at each sort grows old.
 const SORT_EVERY: u32 = 4;
+/// Where workgroups go by block, who moves within it does not matter.
+const SORT_BLOCKS_EVERY: u32 = 32;
 /// Particle-substeps of one submit: about 0.1 s on two CPU cores, so that a stop is heard.
 const CPU_BATCH: u32 = 400_000;
 /// Substeps of one submit on a GPU.
@@ -269,8 +274,15 @@ impl Solver {
             last_dt_s: if cut { rest_s as f32 } else { dt_s as f32 },
             substeps: whole as u32 + u32::from(cut),
             // Lists of neighbours are made from the cells of the sort.
-            sort_every: if self.sph().is_some() { 1 } else { (sorts as u32).clamp(1, (SORT_EVERY >> halvings).max(1)) },
+            sort_every: if self.sph().is_some() { 1 } else { (sorts as u32).clamp(1, (self.most_between_sorts() >> halvings).max(1)) },
             viscous_rounds: self.sph().map_or(0, |sph| sph.viscous_rounds(cell_m, dt_s)),
+        }
+    }
+
+    fn most_between_sorts(&self) -> u32 {
+        match self.gpu.tier {
+            Tier::Gpu if self.liquid.is_none() => SORT_BLOCKS_EVERY,
+            _ => SORT_EVERY,
         }
     }
 
@@ -345,6 +357,8 @@ impl Solver {
     /// Uploads what the passes of a segment start from.
     pub(super) fn start_segment(&mut self) {
         self.params.pools = u32::from(self.liquid.is_some() || self.sph.is_some());
+        // Liquids beside the grid look for the particles of a cell.
+        self.params.mixes = u32::from(self.transfers.by_block() && self.sph().is_none());
         self.params.first_substep = self.substep;
         self.gpu.upload(&self.params_buffer, &[self.params]);
         self.gpu.upload(&self.control, &[Control::FRESH]);
@@ -352,8 +366,14 @@ impl Solver {
 
     pub(super) fn record_substep(&mut self, plan: &Plan, step: u32, bound: &[Bound; 2], recording: &mut Recording) {
         let sorts = step.is_multiple_of(plan.sort_every);
-        let substep =
-            Substep { dt_s: plan.dt_of(step), dt_next_s: plan.dt_of(step + 1), index: self.substep, job: 0, since_s: plan.time_s(step) as f32 };
+        let substep = Substep {
+            dt_s: plan.dt_of(step),
+            dt_next_s: plan.dt_of(step + 1),
+            index: self.substep,
+            job: 0,
+            since_s: plan.time_s(step) as f32,
+            lag: u32::from(step > 0 && self.fuses(plan, step - 1)),
+        };
         if step == 0 {
             self.rigid.iter().zip(&bound[self.current].rigid).for_each(|(r, b)| r.record_start(b, &substep, recording));
         }
@@ -374,6 +394,13 @@ impl Solver {
         self.substep += 1;
     }
 
+    /// Whether one pass ends a substep and sums for the next: where nothing comes between.
+    fn fuses(&self, plan: &Plan, step: u32) -> bool {
+        let next = step + 1;
+        let alone = self.fields.is_none() && self.sph().is_none();
+        alone && self.transfers.fuse() && next < plan.substeps && !next.is_multiple_of(plan.sort_every)
+    }
+
     /// One substep of everything that is not rigid.
     fn record_soft(&self, b: &Bound, plan: &Plan, step: u32, substep: &Substep, recording: &mut Recording) {
         let (passes, groups) = (&self.passes, self.particle_groups());
@@ -384,7 +411,9 @@ impl Solver {
             sph.record(bound, substep, plan.viscous_rounds, groups, recording);
         }
         if self.has_solids() {
-            recording.dispatch_with(&passes.p2g, &b.p2g, substep, groups);
+            if substep.lag == 0 {
+                self.record_p2g(b, substep, recording);
+            }
             self.rigid.iter().zip(&b.rigid).for_each(|(r, b)| r.record_meeting(b, substep, groups, recording));
             recording.indirect_with(&passes.grid, &b.grid, substep, &b.active_groups, 0);
             if let Some(liquid) = &b.liquid {
@@ -393,7 +422,10 @@ impl Solver {
             if let (Some(encounter), Some(bindings)) = (&self.encounter, &b.encounter) {
                 recording.indirect_with(&encounter.passes.encounter, bindings, substep, &b.active_groups, 0);
             }
-            recording.dispatch_with(&passes.g2p, &b.g2p, substep, groups);
+            match self.fuses(plan, step) {
+                true => self.record_fused(b, substep, recording),
+                false => self.record_g2p(b, substep, recording),
+            }
         }
     }
 
@@ -431,10 +463,17 @@ impl Solver {
         let (kinematics, matter) = (&state.kinematics, &state.matter);
         let (laws, control) = (&self.laws, &self.control);
         let stress = [params, kinematics, matter, control, &laws.table, &laws.activations];
-        let around = (&self.colliders_buffer, &self.objects_buffer);
-        let g2p = [params, kinematics, matter, &grid.velocity, around.0, around.1, control, &laws.table, &laws.activations, laws.shown()];
-        let mut on_grid =
-            vec![params, &grid.active_blocks, around.0, &self.pins_buffer, &grid.sums, &grid.marks, &grid.velocity, control, &grid.masses];
+        let mut on_grid = vec![
+            params,
+            &grid.active_blocks,
+            &self.colliders_buffer,
+            &self.pins_buffer,
+            &grid.sums,
+            &grid.marks,
+            &grid.velocity,
+            control,
+            &grid.masses,
+        ];
         on_grid.extend(grid.liquid.iter().flat_map(|l| [&l.pull, &l.film]));
         Bound {
             rigid: self.rigid.as_ref().map(|r| r.bind(self, grid, current)),
@@ -445,18 +484,19 @@ impl Solver {
             scan_sums: gpu.bind(&p.scan_sums, &[params, &grid.block_info, &grid.chunk_sums]),
             scan_blocks: gpu.bind(
                 &p.scan_blocks,
-                &[params, &grid.block_info, &grid.chunk_sums, &grid.block_start, &grid.active_blocks, &grid.active_groups, control],
+                &[params, &grid.block_info, &grid.chunk_sums, &grid.block_start, &grid.active_blocks, &grid.items, &grid.active_groups, control],
             ),
             count: gpu.bind(&p.count, &[params, kinematics, matter, &grid.cell_count]),
             scan_cells: gpu
                 .bind(&p.scan_cells, &[params, &grid.active_blocks, &grid.block_start, &grid.cell_count, &grid.cell_start, &grid.cell_end]),
             scatter: gpu.bind(&p.scatter, &[params, kinematics, matter, &grid.cell_count, &grid.cell_start, &self.slots]),
-            order: gpu.bind(&p.order, &[params, &self.slots, kinematics, matter, &other.kinematics, &other.matter]),
+            order: gpu
+                .bind(&p.order, &[params, &self.slots, kinematics, matter, &other.kinematics, &other.matter, &grid.block_start, &grid.cell_end]),
             stress: gpu.bind(&p.stress, &stress[..if laws.all { 6 } else { 5 }]),
             p2g: gpu.bind(&p.p2g, &[params, kinematics, matter, &self.colliders_buffer, &grid.sums, &grid.marks, &self.control, &laws.table]),
             grid: gpu.bind(&p.grid, &on_grid),
             liquid: self.bind_liquid(grid, state),
-            g2p: gpu.bind(&p.g2p, &g2p[..if laws.all { 10 } else { 8 }]),
+            transfers: self.transfers.bind(self, grid, state),
             sph: self.sph().map(|sph| sph.bind(self, grid, current)),
         }
     }
@@ -517,7 +557,7 @@ pub(super) struct Bound {
     pub stress: wgpu::BindGroup,
     pub p2g: wgpu::BindGroup,
     pub grid: wgpu::BindGroup,
-    pub g2p: wgpu::BindGroup,
+    pub transfers: TransferBound,
     pub liquid: Option<LiquidBound>,
     pub sph: Option<SphBound>,
 }

@@ -5,6 +5,10 @@ use crate::gpu::Constant;
 
 /// Threads a workgroup of the passes over particles. A multiple of every subgroup size.
 pub const WORKGROUP: u32 = 128;
+/// Threads a workgroup of the passes over a block's particles.
+pub const TILE_LANES: u32 = 256;
+/// Fewer particles than this are spread over more workgroups.
+pub const FEW_PARTICLES: usize = 60_000;
 /// Threads a workgroup of the scans; one for each cell of a block.
 pub const SCAN_LANES: u32 = 64;
 /// Blocks that each thread of a scan sums alone.
@@ -207,6 +211,7 @@ pub const SURFACE_SLOPE: f32 = 23.0 / 24.0;
 pub fn all() -> Vec<(&'static str, Constant)> {
     vec![
         ("WORKGROUP", Constant::U32(WORKGROUP)),
+        ("TILE_LANES", Constant::U32(TILE_LANES)),
         ("SCAN_LANES", Constant::U32(SCAN_LANES)),
         ("SCAN_RUN", Constant::U32(SCAN_RUN)),
         ("GROUPS_ACROSS", Constant::U32(GROUPS_ACROSS)),

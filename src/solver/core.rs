@@ -1,10 +1,10 @@
 //! The solver itself: its particles, its surroundings, and what may be done to them between frames.
 
 use super::budget;
-use super::constants::{FIXED_BITS, REACH_CELLS, SLACK_CELLS, WORKGROUP};
+use super::constants::{FEW_PARTICLES, FIXED_BITS, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP};
 use super::encounter::{self, Encounter};
 use super::fields::Fields;
-use super::grid::{GridBuffers, Window};
+use super::grid::{GridBuffers, Window, params_buffer};
 use super::kept::Kept;
 use super::laws::{Laws, rows};
 use super::liquid::LiquidPasses;
@@ -13,6 +13,7 @@ use super::passes::Passes;
 use super::rigid::{self, Rigid};
 use super::sph::Sph;
 use super::state::{self, ParticleState, StateBuffers};
+use super::transfer::Transfers;
 use super::types::{Particles, Placement, Settings, Softened, SolverError};
 use super::watch::{Control, Watch};
 use crate::gpu::{Gpu, Recording};
@@ -46,6 +47,9 @@ pub(super) struct Params {
     pub has_liquid: u32,
     pub layers: u32,
     pub pools: u32,
+    pub item_particles: u32,
+    pub mixes: u32,
+    pub rounder: f32,
 }
 
 #[repr(C)]
@@ -64,6 +68,7 @@ pub struct Solver {
     pub(super) gpu: Gpu,
     pub(super) settings: Settings,
     pub(super) passes: Passes,
+    pub(super) transfers: Transfers,
     pub(super) params: Params,
     pub(super) params_buffer: wgpu::Buffer,
     pub(super) colliders_buffer: wgpu::Buffer,
@@ -127,15 +132,19 @@ impl Solver {
             reach_m: REACH_CELLS * settings.cell_m,
             has_ground: u32::from(settings.ground.is_some()),
             slack: SLACK_CELLS,
+            item_particles: if n < FEW_PARTICLES { TILE_LANES } else { 2 * TILE_LANES },
+            rounder: 12_582_912.0,
             seed: (settings.seed ^ settings.seed >> 32) as u32,
             // Scales are made for at least a millimetre a second.
             momentum_floor: heaviest_kg * 1e-3,
             ..Default::default()
         };
         let rigid = rigid::assemble(&states, &particles.substances, &colliders, settings.cell_m)?.map(|all| Rigid::new(gpu, &all)).transpose()?;
+        let passes = Passes::new(gpu);
         let mut solver = Solver {
-            passes: Passes::new(gpu),
-            params_buffer: gpu.storage_from("solver.params", &[params])?,
+            transfers: Transfers::new(gpu, &passes.p2g),
+            passes,
+            params_buffer: params_buffer(gpu, &params, 0)?,
             colliders_buffer: gpu.storage_from("solver.colliders", &padded(&colliders, 1))?,
             pins_buffer: gpu.storage::<PinRecord>("solver.pins", settings.pins.len().max(1))?,
             objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,

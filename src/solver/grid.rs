@@ -4,7 +4,7 @@
 //! each sort (`bin.wgsl`, `scan_blocks.wgsl`). A window costs but a few bytes a block, for the map behind
 //! `Params`.
 
-use super::constants::{SCAN_LANES, SCAN_RUN};
+use super::constants::{SCAN_LANES, SCAN_RUN, TILE_LANES};
 use super::core::{Params, Solver};
 use super::liquid::LiquidFields;
 use super::types::SolverError;
@@ -65,6 +65,8 @@ pub(super) struct GridBuffers {
     pub block_start: wgpu::Buffer,
     pub chunk_sums: wgpu::Buffer,
     pub active_blocks: wgpu::Buffer,
+    /// What workgroups take that go by block.
+    pub items: wgpu::Buffer,
     pub active_groups: wgpu::Buffer,
     /// Of liquids, where there are any.
     pub liquid: Option<LiquidFields>,
@@ -132,7 +134,7 @@ fn allowed_spread(gpu: &Gpu) -> u64 {
 }
 
 impl GridBuffers {
-    fn new(gpu: &Gpu, blocks: usize, spread: usize, kind: GridKind) -> Result<GridBuffers, SolverError> {
+    fn new(gpu: &Gpu, particles: usize, blocks: usize, spread: usize, kind: GridKind) -> Result<GridBuffers, SolverError> {
         // With the empty one; buffers come in lengths of 16 bytes.
         let stored = (blocks + 1).next_multiple_of(4);
         let nodes = stored * 64;
@@ -150,9 +152,10 @@ impl GridBuffers {
             cell_end: gpu.storage::<u32>("solver.cell_end", nodes)?,
             block_info: gpu.storage::<[u32; 2]>("solver.block_info", spread)?,
             block_start: gpu.storage::<u32>("solver.block_start", stored)?,
-            chunk_sums: gpu.storage::<[u32; 2]>("solver.chunk_sums", chunks)?,
+            chunk_sums: gpu.storage::<[u32; 4]>("solver.chunk_sums", chunks)?,
             active_blocks: gpu.storage::<u32>("solver.active_blocks", stored)?,
-            active_groups: gpu.storage::<u32>("solver.active_groups", 4)?,
+            items: gpu.storage::<[u32; 4]>("solver.items", stored + particles / TILE_LANES as usize + 2)?,
+            active_groups: gpu.storage::<[u32; 4]>("solver.active_groups", 2)?,
             liquid: if kind.wet { Some(LiquidFields::new(gpu, nodes)?) } else { None },
             meeting: if kind.meets { Some(MeetingBuffers::new(gpu, nodes)?) } else { None },
         })
@@ -174,6 +177,14 @@ impl MeetingBuffers {
             meetings: gpu.storage::<[f32; 16]>("solver.rigid.meetings", nodes)?,
         })
     }
+}
+
+/// `Params` of `shaders/solver/common.wgsl`, with the map of a window of so many blocks.
+pub(super) fn params_buffer(gpu: &Gpu, params: &Params, spread: usize) -> Result<wgpu::Buffer, SolverError> {
+    // WGSL rounds a structure up to a multiple of 16 bytes.
+    let buffer = gpu.storage_bytes("solver.params", (size_of::<Params>() + spread.max(4) * size_of::<u32>()) as u64)?;
+    gpu.upload(&buffer, &[*params]);
+    Ok(buffer)
 }
 
 impl Solver {
@@ -226,9 +237,8 @@ impl Solver {
     pub(super) fn new_grid(&mut self, capacity: usize, spread: usize) -> Result<(), SolverError> {
         // The old one goes first, so that both need not fit.
         self.grid = None;
-        self.grid = Some(GridBuffers::new(&self.gpu, capacity, spread, self.grid_kind())?);
-        self.params_buffer = self.gpu.storage_bytes("solver.params", (size_of::<Params>() + spread * size_of::<u32>()) as u64)?;
-        self.gpu.upload(&self.params_buffer, &[self.params]);
+        self.grid = Some(GridBuffers::new(&self.gpu, self.params.count as usize, capacity, spread, self.grid_kind())?);
+        self.params_buffer = params_buffer(&self.gpu, &self.params, spread)?;
         Ok(())
     }
 

@@ -14,7 +14,6 @@ passes! {
     /// Passes that know all laws, in place of those for elastic matter alone.
     LawPasses;
     stress_laws: ["control", "substep", "substance", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "cube_root", "law_liquid", "laws", "activation", "stress_laws", "stress"] [Read, Write, Read, Write, Read, Read] SUBSTEP;
-    g2p_laws: ["control", "substep", "substance", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "cube_root", "law_liquid", "laws", "activation", "g2p_laws", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read, Read, Write] SUBSTEP;
     prestress_gather_laws: ["control", "substep", "substance", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "cube_root", "law_liquid", "laws", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;
 }
 
@@ -81,9 +80,9 @@ impl Solver {
         self.laws.table = self.gpu.storage_from("solver.substances", &padded(&substance::records(substances), 1))?;
         self.laws.substances = substances.to_vec();
         if !self.laws.all && !substances.iter().all(Substance::is_plain) {
-            let LawPasses { stress_laws, g2p_laws, prestress_gather_laws } = LawPasses::new(&self.gpu);
+            let LawPasses { stress_laws, prestress_gather_laws } = LawPasses::new(&self.gpu);
             self.passes.stress = stress_laws;
-            self.passes.g2p = g2p_laws;
+            self.transfers.know_all_laws(&self.gpu);
             self.passes.prestress_gather = prestress_gather_laws;
             self.laws.all = true;
         }

@@ -112,7 +112,7 @@ impl Solver {
         if self.params.collider_count > 0 {
             recording.indirect(&p.liquid_film, &b.film, active_groups, 0);
         }
-        let span = Substep { dt_s: span_s, dt_next_s: 0.0, index: self.substep, job: 0, since_s: 0.0 };
+        let span = Substep { dt_s: span_s, dt_next_s: 0.0, index: self.substep, job: 0, since_s: 0.0, lag: 0 };
         recording.dispatch_with(&p.liquid_density, &b.density, &span, groups);
         if self.params.tension_units > 0.0 {
             recording.indirect(&p.liquid_slope, &b.slope, active_groups, 0);

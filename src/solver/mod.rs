@@ -29,6 +29,7 @@ mod rigid;
 mod sph;
 mod state;
 mod substance;
+mod transfer;
 mod types;
 pub mod validate;
 mod watch;
@@ -40,7 +41,7 @@ mod tests;
 #[cfg(test)]
 mod twin;
 
-pub use bench::{BenchReport, bench_sph, bench_sph_second, bench_substep};
+pub use bench::{BenchReport, bench_mixture, bench_sph, bench_sph_second, bench_substep};
 pub use change::Moduli;
 pub use checkpoint::Checkpoint;
 pub use core::Solver;
@@ -53,6 +54,7 @@ pub use types::{Advance, Collider, Field, ObjectForce, Particles, PinRegion, Pla
 pub fn kernels() -> Vec<KernelSource> {
     let mut all = passes::kernels();
     all.extend(laws::kernels());
+    all.extend(transfer::kernels());
     all.extend(encounter::kernels());
     all.extend(fields::kernels());
     all.extend(liquid::kernels());

@@ -1,7 +1,7 @@
 //! The solver's kernels, and their compiled set.
 
 /// Bytes of the immediates of a pass of the substep.
-pub(super) const SUBSTEP: u32 = 20;
+pub(super) const SUBSTEP: u32 = 24;
 /// Bytes of the immediates of a kick.
 const KICK: u32 = 32;
 
@@ -54,19 +54,18 @@ macro_rules! passes {
 }
 
 passes! {
-    /// The passes of MLS-MPM.
+    /// The passes of MLS-MPM; [`super::transfer`] has those that depend on the device.
     Passes;
     bin: ["control", "cell", "bin"] [Read, Read, Read, Write, Write] 0;
-    scan_sums: ["scan", "scan_sums"] [Read, Read, Write] 0;
-    scan_blocks: ["control", "scan", "scan_blocks"] [Write, Write, Read, Write, Write, Write, Write] 0;
+    scan_sums: ["chunk", "scan", "scan_sums"] [Read, Read, Write] 0;
+    scan_blocks: ["control", "chunk", "scan", "scan_blocks"] [Write, Write, Read, Write, Write, Write, Write, Write] 0;
     count: ["cell", "count"] [Read, Read, Read, Write] 0;
     scan_cells: ["scan", "scan_cells"] [Read, Read, Read, Read, Write, Write] 0;
     scatter: ["cell", "scatter"] [Read, Read, Read, Write, Read, Write] 0;
-    order: ["order"] [Read, Read, Read, Read, Write, Write] 0;
+    order: ["order"] [Read, Read, Read, Read, Write, Write, Read, Read] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
-    p2g: ["control", "substep", "substance", "hash", "particle", "contact", "p2g"] [Read, Read, Read, Read, Write, Write, Write, Read] SUBSTEP;
+    p2g: ["control", "substep", "substance", "hash", "particle", "contact", "marks", "p2g"] [Read, Read, Read, Read, Write, Write, Write, Read] SUBSTEP;
     grid: ["control", "substep", "contact", "node", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
-    g2p: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "contact", "gather", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;
     kick: ["particle", "particle_write", "kick"] [Read, Write, Read] KICK;
     prestress_gather: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;

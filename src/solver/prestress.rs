@@ -420,7 +420,7 @@ fn residual(search: &Search) -> f32 {
 
 /// Immediates of a pass of the search.
 fn job(job: u32, index: u32) -> Substep {
-    Substep { dt_s: 0.0, dt_next_s: 0.0, index, job, since_s: 0.0 }
+    Substep { dt_s: 0.0, dt_next_s: 0.0, index, job, since_s: 0.0, lag: 0 }
 }
 
 /// Whether a particle can start under this deformation. Slivers at the rim of a solid, whose nodes

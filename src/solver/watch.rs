@@ -7,7 +7,7 @@ use glam::IVec3;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct Control {
-    momentum: [u32; 2],
+    momentum: [u32; 4],
     speed: u32,
     overflow: u32,
     window: u32,
@@ -26,7 +26,7 @@ pub(super) struct Control {
 impl Control {
     /// What a segment starts from.
     pub const FRESH: Control = Control {
-        momentum: [0; 2],
+        momentum: [0; 4],
         speed: 0,
         overflow: 0,
         window: 0,

@@ -236,7 +236,7 @@ fn the_pass_follows_its_twin() {
     solver.start_segment();
     let before = solver.states().expect("states");
     let bound = solver.bind_both().expect("bound");
-    let substep = Substep { dt_s: 1e-3, dt_next_s: 1e-3, index: 0, job: 0, since_s: 0.25 };
+    let substep = Substep { dt_s: 1e-3, dt_next_s: 1e-3, index: 0, job: 0, since_s: 0.25, lag: 0 };
     let mut recording = Recording::default();
     solver.record_fields(&bound[solver.current], &substep, &mut recording);
     Gpu::shared_for_tests().expect("a device").submit(&recording);

@@ -102,7 +102,7 @@ fn density_tension_and_walls_follow_the_twins() {
     let (passes, groups) = (solver.passes.clone(), solver.particle_groups());
     run(|r| r.dispatch_with(&passes.stress, &b.stress, &SUBSTEP, groups));
     twin::stress(&mut states, &around, DT_S);
-    run(|r| r.dispatch_with(&passes.p2g, &b.p2g, &SUBSTEP, groups));
+    run(|r| solver.record_p2g(b, &SUBSTEP, r));
     let mut want = twin::p2g(&states, &around);
     run(|r| r.indirect_with(&passes.grid, &b.grid, &SUBSTEP, &grid.active_groups, 0));
     for (node, value) in want.iter_mut() {

@@ -1,5 +1,6 @@
 //! Tests of the whole solver on a device, and of each kernel against its twin.
 
+mod by_block;
 mod change;
 mod contact;
 mod encounter;

@@ -137,7 +137,7 @@ fn one_substep_pass_by_pass() {
     let sph = solver.sph().expect("a liquid");
     let b = bound[solver.current].sph.as_ref().expect("bound");
     let p = &sph.passes;
-    let substep = |job: u32| Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job, since_s: 0.0 };
+    let substep = |job: u32| Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job, since_s: 0.0, lag: 0 };
 
     // Lists and sums.
     run(&|r| {

@@ -36,6 +36,10 @@ fn scene() -> (Solver, Vec<ParticleState>) {
 }
 
 pub(super) fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
+    scene_on(&gpu(), substances)
+}
+
+pub(super) fn scene_on(gpu: &Gpu, substances: [Substance; 2]) -> (Solver, Vec<ParticleState>) {
     let (mut noise, mut past) = (Noise(7), Noise(5));
     let mut particles = block(Vec3::new(0.0, 0.0, 0.01), Vec3::splat(0.2), 0.025, 2e5, 0.3);
     let other = block(Vec3::new(0.19, 0.05, 0.02), Vec3::splat(0.1), 0.02, 5e4, 0.2);
@@ -59,7 +63,7 @@ pub(super) fn scene_of(substances: [Substance; 2]) -> (Solver, Vec<ParticleState
     let (low_m, high_m) = (Vec3::ZERO, Vec3::splat(0.2));
     settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0, path: vec![[0.5, 0.1, -0.2, 0.3]] }];
     settings.forces = vec![crate::solver::ObjectForce { object: 1, from_s: 0.0, to_s: 1.0, acceleration_m_s2: Vec3::new(3.0, -2.0, 1.0) }];
-    let mut solver = solver(settings, &particles);
+    let mut solver = Solver::new(gpu, settings, &particles).expect("a solver");
     // All on one layer of the grid: `encounter` has the others.
     solver.params.layers = 1;
     let mut count = 0;
@@ -103,7 +107,7 @@ pub(super) fn sort(solver: &mut Solver) {
     solver.current = 1 - solver.current;
 }
 
-pub(super) const SUBSTEP: Substep = Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job: 0, since_s: 0.003 };
+pub(super) const SUBSTEP: Substep = Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job: 0, since_s: 0.003, lag: 0 };
 
 /// Where nodes are stored after a sort.
 pub(super) struct Stored {
@@ -173,7 +177,11 @@ fn one_substep_of_other_laws() {
 }
 
 fn follows_the_twins(substances: [Substance; 2]) {
-    let (mut solver, mut states) = scene_of(substances);
+    follows_the_twins_on(&gpu(), substances);
+}
+
+pub(super) fn follows_the_twins_on(device: &Gpu, substances: [Substance; 2]) {
+    let (mut solver, mut states) = scene_on(device, substances);
     let colliders = obstacles::colliders(&solver.settings);
     let pins = [obstacles::pin(&solver.settings.pins[0], CELL_M, 0.0)];
     let accelerations = [Vec3::ZERO, Vec3::new(3.0, -2.0, 1.0)];
@@ -206,7 +214,7 @@ fn follows_the_twins(substances: [Substance; 2]) {
     }
 
     // Particles to grid.
-    run(|r| r.dispatch_with(&passes.p2g, &b.p2g, &SUBSTEP, groups));
+    run(|r| solver.record_p2g(b, &SUBSTEP, r));
     let want = twin::p2g(&states, &around);
     let stored = Stored::of(&solver);
     let grid = solver.grid.clone().expect("a grid");
@@ -250,7 +258,7 @@ fn follows_the_twins(substances: [Substance; 2]) {
     for (node, value) in want.iter_mut() {
         value.velocity = Vec3::from_slice(&velocity[stored.node(node, 0)]);
     }
-    run(|r| r.dispatch_with(&passes.g2p, &b.g2p, &SUBSTEP, groups));
+    run(|r| solver.record_g2p(b, &SUBSTEP, r));
     let before = states.clone();
     twin::g2p(&mut states, &want, &around, DT_S, DT_S);
     for (got, want) in solver.states().expect("states").iter().zip(&states) {

@@ -5,7 +5,9 @@ use crate::cli::exit::{Failure, Kind};
 use phystalk::{render, skin, solver};
 
 /// Particles of `mpm` and `sph`.
-const PARTICLES: [(usize, &str); 3] = [(20_000, "20k"), (100_000, "100k"), (1_000_000, "1M")];
+const PARTICLES: [(usize, &str); 4] = [(8_000, "8k"), (20_000, "20k"), (100_000, "100k"), (1_000_000, "1M")];
+/// Particles of `mpm` that are of many laws.
+const MIXED: usize = 100_000;
 /// Gaussians and particles of `skin`.
 const SKINS: [(usize, usize, &str); 2] = [(100_000, 20_000, "100k/20k"), (1_000_000, 100_000, "1M/100k")];
 /// Gaussians of `render`.
@@ -25,6 +27,11 @@ pub fn jobs() -> Vec<Job> {
         };
         jobs.push(Job { name: "mpm", size: size.to_owned(), heavy: particles > 20_000, run: Box::new(run) });
     }
+    let mixture = |gpu: &phystalk::gpu::Gpu| {
+        let report = solver::bench_mixture(gpu, MIXED).map_err(|e| Failure::new(Kind::Unstable, e))?;
+        Ok(Timing { seconds: report.substep_seconds.to_vec(), passes: report.passes })
+    };
+    jobs.push(Job { name: "mpm", size: "mixture".to_owned(), heavy: true, run: Box::new(mixture) });
     for (particles, size) in PARTICLES {
         let run = move |gpu: &phystalk::gpu::Gpu| {
             let report = solver::bench_sph(gpu, particles).map_err(|e| Failure::new(Kind::Unstable, e))?;

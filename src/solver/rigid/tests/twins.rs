@@ -37,7 +37,7 @@ fn contacts_impulses_and_places_are_those_of_the_twin() {
     let all = body::assemble(&states, &particles.substances, &colliders, settings.cell_m).expect("bodies").expect("some");
     let dt_s = 5e-4;
     let world = World { all: &all, colliders: &colliders, gravity_m_s2: settings.gravity_m_s2, accelerations: &[Vec3::ZERO; 2], dt_s };
-    let substep = Substep { dt_s, dt_next_s: dt_s, index: 80, job: 0, since_s: 0.0 };
+    let substep = Substep { dt_s, dt_next_s: dt_s, index: 80, job: 0, since_s: 0.0, lag: 0 };
     let bound = solver.bind_both().expect("bound");
     let bound = bound[solver.current].rigid.as_ref().expect("rigid passes");
     let run = |add: &dyn Fn(&mut Recording)| {
@@ -108,7 +108,7 @@ fn the_exchange_with_soft_matter_is_that_of_the_twin() {
     let rigid = solver.rigid.clone().expect("rigid bodies");
     let meeting = rigid.meeting.clone().expect("soft matter");
     let dt_s = 4e-4;
-    let substep = Substep { dt_s, dt_next_s: dt_s, index: 0, job: 0, since_s: 0.0 };
+    let substep = Substep { dt_s, dt_next_s: dt_s, index: 0, job: 0, since_s: 0.0, lag: 0 };
     let (passes, groups) = (solver.passes.clone(), solver.particle_groups());
     let mut recording = Recording::default();
     let bound = solver.bind_both().expect("bound");

@@ -1,0 +1,149 @@
+//! The form of the transfers that GPUs run, on whatever device the tests have.
+
+use super::twins::{SUBSTEP, follows_the_twins_on, gpu, node_count, run, scene_on, sort};
+use crate::Stop;
+use crate::gpu::{Gpu, Recording, Tier};
+use crate::solver::advance::{Bound, Substep};
+use crate::solver::state::ParticleState;
+use crate::solver::substance::Substance;
+use crate::solver::twin;
+use crate::solver::validate::{append, block};
+use crate::solver::{Plane, Settings, Solver};
+use crate::spec::ElasticModel;
+use glam::Vec3;
+
+/// The test's device, taken for a GPU.
+fn as_gpu() -> Gpu {
+    Gpu { tier: Tier::Gpu, ..gpu() }
+}
+
+fn elastic() -> [Substance; 2] {
+    [Substance::Elastic(ElasticModel::Corotated), Substance::Elastic(ElasticModel::NeoHookean)]
+}
+
+#[test]
+fn one_substep_pass_by_pass() {
+    follows_the_twins_on(&as_gpu(), elastic());
+}
+
+#[test]
+fn one_substep_of_other_laws() {
+    let [_, _, muscle, _, _, viscoplastic, _, _, _] = super::laws::all_laws().try_into().expect("nine");
+    follows_the_twins_on(&as_gpu(), [muscle, viscoplastic]);
+}
+
+#[test]
+fn the_sort_deals_the_particles_of_a_block_out_by_cell() {
+    let (mut solver, states) = scene_on(&as_gpu(), elastic());
+    solver.params.item_particles = 40;
+    solver.start_segment();
+    sort(&mut solver);
+    let (want, n) = (twin::sort::sort(&states, &solver.params), states.len());
+    let cell_of = |slot: usize| want.starts[want.starts.partition_point(|&(_, start)| start as usize <= slot) - 1].0;
+    let by_cell: Vec<(u32, u32)> = (0..n).map(|slot| (cell_of(slot) / 64, want.order[slot])).collect();
+    let items: Vec<&[(u32, u32)]> = by_cell.chunk_by(|a, b| a.0 == b.0).flat_map(|block| block.chunks(40)).collect();
+    let dealt: Vec<u32> = items.iter().flat_map(|item| (0..8).flat_map(|hand| item.iter().skip(hand).step_by(8))).map(|p| p.1).collect();
+    let matter: Vec<[f32; 4]> = gpu().read(&solver.buffers[solver.current].matter, 4 * n).expect("matter");
+    assert_eq!((0..n).map(|i| matter[3 * n + i][0].to_bits()).collect::<Vec<_>>(), dealt);
+    // The list of items, with its length before it.
+    let listed: Vec<[u32; 4]> = gpu().read(&solver.grid.as_ref().expect("a grid").items, items.len() + 1).expect("items");
+    assert_eq!(listed[0][0] as usize, items.len());
+    let mut first = 0;
+    for (item, listed) in items.iter().zip(&listed[1..]) {
+        let end = first + item.len() as u32;
+        assert_eq!(*listed, [item[0].0, want.active[item[0].0 as usize - 1], first, end]);
+        first = end;
+    }
+}
+
+/// Sums and marks of the grid after a substep's first half.
+fn sums(solver: &Solver) -> (Vec<[i32; 4]>, Vec<[u32; 2]>) {
+    let bound = solver.bind_both().expect("bound");
+    let b = &bound[solver.current];
+    run(|r| r.dispatch_with(&solver.passes.stress, &b.stress, &SUBSTEP, solver.particle_groups()));
+    run(|r| solver.record_p2g(b, &SUBSTEP, r));
+    let (grid, nodes) = (solver.grid.as_ref().expect("a grid"), node_count(solver));
+    (gpu().read(&grid.sums, nodes).expect("sums"), gpu().read(&grid.marks, nodes).expect("marks"))
+}
+
+#[test]
+fn what_left_its_block_counts_all_the_same() {
+    let in_place = {
+        let (mut solver, _) = scene_on(&as_gpu(), elastic());
+        sort(&mut solver);
+        sums(&solver)
+    };
+    // In the order they were given, hardly any lies in the block whose workgroup takes it.
+    let (mut solver, _) = scene_on(&as_gpu(), elastic());
+    sort(&mut solver);
+    solver.edit(|_| ()).expect("an edit");
+    let elsewhere = sums(&solver);
+    assert!(in_place == elsewhere);
+    assert!(in_place.1.iter().filter(|m| **m != [0; 2]).count() > 50);
+}
+
+#[test]
+fn one_pass_does_what_two_do() {
+    let next = Substep { index: SUBSTEP.index + 1, lag: 1, ..SUBSTEP };
+    let half = |ended: &dyn Fn(&Solver, &Bound, &mut Recording)| {
+        let (mut solver, _) = scene_on(&as_gpu(), elastic());
+        sort(&mut solver);
+        sums(&solver);
+        let bound = solver.bind_both().expect("bound");
+        let b = &bound[solver.current];
+        run(|r| r.indirect_with(&solver.passes.grid, &b.grid, &SUBSTEP, &b.active_groups, 0));
+        run(|r| ended(&solver, b, r));
+        let (grid, nodes) = (solver.grid.as_ref().expect("a grid"), node_count(&solver));
+        let sums: Vec<[i32; 4]> = gpu().read(&grid.sums, nodes).expect("sums");
+        let marks: Vec<[u32; 2]> = gpu().read(&grid.marks, nodes).expect("marks");
+        (sums, marks, solver.states().expect("states"))
+    };
+    let one = half(&|solver, b, r| solver.record_fused(b, &SUBSTEP, r));
+    let two = half(&|solver, b, r| {
+        solver.record_g2p(b, &SUBSTEP, r);
+        solver.record_p2g(b, &next, r);
+    });
+    assert_eq!(one.1, two.1);
+    // Rounding may differ where a compiler contracts: a few units in 2^26.
+    let apart = one.0.iter().flatten().zip(two.0.iter().flatten()).map(|(a, b)| (a - b).abs()).max();
+    assert!(apart.is_some_and(|a| a <= 64) && one.0.iter().any(|s| s[3] > 1 << 20), "{apart:?}");
+    for (a, b) in one.2.iter().zip(&two.2) {
+        assert!((a.position_m - b.position_m).length() < 1e-6 && a.f().abs_diff_eq(b.f(), 1e-5));
+    }
+}
+
+/// Two bodies, one slow and one fast, that fall onto the ground and each other.
+fn fall(device: &Gpu) -> Solver {
+    let mut particles = block(Vec3::new(0.0, 0.0, 0.03), Vec3::splat(0.15), 0.025, 1e5, 0.3);
+    let other = block(Vec3::new(0.03, 0.02, 0.25), Vec3::splat(0.1), 0.025, 5e4, 0.2);
+    append(&mut particles, other, Substance::Elastic(ElasticModel::NeoHookean));
+    particles.velocity_m_s = particles.object.iter().map(|&o| Vec3::new(0.1, 0.0, -2.0 * o as f32)).collect();
+    let mut settings = Settings::new(0.05);
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.4, restitution: 0.0 });
+    Solver::new(device, settings, &particles).expect("a solver")
+}
+
+fn after(solver: &mut Solver, to_s: f64) -> Vec<ParticleState> {
+    solver.advance(to_s, &Stop::default()).expect("frames");
+    solver.states().expect("states")
+}
+
+#[test]
+fn runs_repeat_and_resume_to_the_bit() {
+    let mut first = fall(&as_gpu());
+    after(&mut first, 0.06);
+    let kept = first.checkpoint().expect("a checkpoint");
+    let end = after(&mut first, 0.12);
+    assert_eq!(end, after(&mut fall(&as_gpu()), 0.12));
+    let mut resumed = fall(&as_gpu());
+    resumed.restore(&kept).expect("it fits");
+    assert_eq!(end, after(&mut resumed, 0.12));
+}
+
+#[test]
+fn both_forms_move_alike() {
+    let (ours, theirs) = (after(&mut fall(&as_gpu()), 0.1), after(&mut fall(&Gpu { tier: Tier::Cpu, ..gpu() }), 0.1));
+    for (a, b) in ours.iter().zip(&theirs) {
+        assert!((a.position_m - b.position_m).length() < 2e-5, "{} and {}", a.position_m, b.position_m);
+    }
+}
