@@ -12,9 +12,15 @@ use crate::solver::{Plane, Settings, Solver};
 use crate::spec::ElasticModel;
 use glam::Vec3;
 
+fn taken_for(tier: Tier) -> Gpu {
+    let mut gpu = gpu();
+    gpu.tier = tier;
+    gpu
+}
+
 /// The test's device, taken for a GPU.
 fn as_gpu() -> Gpu {
-    Gpu { tier: Tier::Gpu, ..gpu() }
+    taken_for(Tier::Gpu)
 }
 
 fn elastic() -> [Substance; 2] {
@@ -142,7 +148,7 @@ fn runs_repeat_and_resume_to_the_bit() {
 
 #[test]
 fn both_forms_move_alike() {
-    let (ours, theirs) = (after(&mut fall(&as_gpu()), 0.1), after(&mut fall(&Gpu { tier: Tier::Cpu, ..gpu() }), 0.1));
+    let (ours, theirs) = (after(&mut fall(&as_gpu()), 0.1), after(&mut fall(&taken_for(Tier::Cpu)), 0.1));
     for (a, b) in ours.iter().zip(&theirs) {
         assert!((a.position_m - b.position_m).length() < 2e-5, "{} and {}", a.position_m, b.position_m);
     }
