@@ -7,6 +7,23 @@ struct Delta {
     z: vec4<f32>,
 }
 
+/// As it lies in memory: t, then G - I row by row as nine halves, and 1 where shapes are lost: what a frame of motion has
+/// of it, with t for the place.
+struct PackedDelta {
+    a: vec4<u32>,
+    b: vec4<u32>,
+}
+
+fn unpacked(d: PackedDelta) -> Delta {
+    let t = bitcast<vec3<f32>>(d.a.xyz);
+    let h0 = unpack2x16float(d.a.w);
+    let h1 = unpack2x16float(d.b.x);
+    let h2 = unpack2x16float(d.b.y);
+    let h3 = unpack2x16float(d.b.z);
+    let h4 = unpack2x16float(d.b.w);
+    return Delta(vec4(h0, h1.x, t.x), vec4(h1.y, h2, t.y), vec4(h3, h4.x, t.z));
+}
+
 fn zero_delta() -> Delta {
     return Delta(vec4<f32>(), vec4<f32>(), vec4<f32>());
 }

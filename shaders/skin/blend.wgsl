@@ -14,79 +14,89 @@ var<immediate> params: Immediates;
 /// The particles of each moving Gaussian, nearest first, in groups of four.
 @group(0) @binding(1) var<storage, read> particle: array<vec4<u32>>;
 @group(0) @binding(2) var<storage, read> weight: array<vec4<f32>>;
-@group(0) @binding(3) var<storage, read> delta: array<Delta>;
+@group(0) @binding(3) var<storage, read> delta: array<PackedDelta>;
 @group(0) @binding(4) var<storage, read> rest: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> geometry: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> sheds: array<f32>;
 /// How far each moving Gaussian has lost its shape, 0 to 1; below 0 where it keeps it whatever happens.
-@group(0) @binding(7) var<storage, read_write> loose: array<f32>;
+@group(0) @binding(6) var<storage, read_write> loose: array<f32>;
 
 /// Share of a Gaussian's weight whose particles went elsewhere.
 var<private> left: f32 = 0.0;
 
-fn weighed(sum: Delta, i: u32, w: f32) -> Delta {
-    let d = delta[i];
+fn delta_of(i: u32) -> Delta {
+    return unpacked(delta[i]);
+}
+
+/// Whether a particle's matter keeps no shape.
+fn sheds(i: u32) -> bool {
+    return unpack2x16float(delta[i].b.w).y > 0.5;
+}
+
+fn added(sum: Delta, d: Delta, w: f32) -> Delta {
     return Delta(sum.x + w * d.x, sum.y + w * d.y, sum.z + w * d.z);
 }
 
-/// How far apart, squared, four particles and the nearest one carry a centre.
-fn apart2(i: vec4<u32>, centre: vec3<f32>, there: vec3<f32>) -> vec4<f32> {
-    let x = moved_by(delta[i.x], centre) - there;
-    let y = moved_by(delta[i.y], centre) - there;
-    let z = moved_by(delta[i.z], centre) - there;
-    let w = moved_by(delta[i.w], centre) - there;
-    return vec4(dot(x, x), dot(y, y), dot(z, z), dot(w, w));
+/// A blend in the making, and how far apart, squared, any of its particles and the nearest one carry the centre.
+struct Blend {
+    sum: Delta,
+    widest2: f32,
 }
 
-/// Weights of particles that went elsewhere fade out: what breaks, pours or crumbles takes its
-/// Gaussians along instead of spanning the gap with them. Whole motion, affine above all, is not touched.
-fn together(slot: u32, whole: Delta, centre: vec3<f32>) -> Delta {
-    let low2 = PART_LOW * PART_LOW * params.span_m * params.span_m;
-    let there = moved_by(delta[particle[slot * VECTORS].x], centre);
-    var widest = 0.0;
-    for (var v = 0u; v < VECTORS; v++) {
-        let apart = select(vec4(0.0), apart2(particle[slot * VECTORS + v], centre, there), weight[slot * VECTORS + v] > vec4(0.0));
-        widest = max(widest, max(max(apart.x, apart.y), max(apart.z, apart.w)));
-    }
-    if widest <= low2 {
-        return whole;
-    }
+fn joined(b: Blend, i: u32, w: f32, centre: vec3<f32>, there: vec3<f32>) -> Blend {
+    let d = delta_of(i);
+    let apart = moved_by(d, centre) - there;
+    return Blend(added(b.sum, d, w), select(b.widest2, max(b.widest2, dot(apart, apart)), !PAPER && w > 0.0));
+}
+
+/// As [`joined`], where weights of particles that went elsewhere fade out.
+fn joined_near(sum: Delta, total: ptr<function, f32>, i: u32, w: f32, centre: vec3<f32>, there: vec3<f32>) -> Delta {
+    let d = delta_of(i);
+    let apart = moved_by(d, centre) - there;
+    let kept = w * (1.0 - smoothstep(PART_LOW, PART_HIGH, sqrt(dot(apart, apart)) / params.span_m));
+    *total += kept;
+    return added(sum, d, kept);
+}
+
+/// What breaks, pours or crumbles takes its Gaussians along instead of spanning the gap with them.
+fn together(slot: u32, centre: vec3<f32>, there: vec3<f32>) -> Delta {
     var sum = zero_delta();
     var total = 0.0;
     for (var v = 0u; v < VECTORS; v++) {
         let i = particle[slot * VECTORS + v];
-        let apart = sqrt(apart2(i, centre, there)) / params.span_m;
-        let w = weight[slot * VECTORS + v] * (1.0 - smoothstep(vec4(PART_LOW), vec4(PART_HIGH), apart));
-        total += w.x + w.y + w.z + w.w;
-        sum = weighed(sum, i.x, w.x);
-        sum = weighed(sum, i.y, w.y);
-        sum = weighed(sum, i.z, w.z);
-        sum = weighed(sum, i.w, w.w);
+        let w = weight[slot * VECTORS + v];
+        sum = joined_near(sum, &total, i.x, w.x, centre, there);
+        sum = joined_near(sum, &total, i.y, w.y, centre, there);
+        sum = joined_near(sum, &total, i.z, w.z, centre, there);
+        sum = joined_near(sum, &total, i.w, w.w, centre, there);
     }
     left = 1.0 - total;
     return Delta(sum.x / total, sum.y / total, sum.z / total);
 }
 
+/// Each particle's map is read once: that is what takes the time.
 fn blended(slot: u32, centre: vec3<f32>) -> Delta {
-    var sum = zero_delta();
+    let nearest = delta_of(particle[slot * VECTORS].x);
+    let there = moved_by(nearest, centre);
+    var blend = Blend(zero_delta(), 0.0);
     for (var v = 0u; v < VECTORS; v++) {
         let i = particle[slot * VECTORS + v];
         let w = weight[slot * VECTORS + v];
-        sum = weighed(sum, i.x, w.x);
-        sum = weighed(sum, i.y, w.y);
-        sum = weighed(sum, i.z, w.z);
-        sum = weighed(sum, i.w, w.w);
+        blend = joined(blend, i.x, w.x, centre, there);
+        blend = joined(blend, i.y, w.y, centre, there);
+        blend = joined(blend, i.z, w.z, centre, there);
+        blend = joined(blend, i.w, w.w, centre, there);
     }
-    if !PAPER && is_finite(sum) {
-        sum = together(slot, sum, centre);
+    // Whole motion, affine above all, is not touched.
+    if blend.widest2 > PART_LOW * PART_LOW * params.span_m * params.span_m && is_finite(blend.sum) {
+        blend.sum = together(slot, centre, there);
     }
-    if !is_finite(sum) {
-        sum = delta[particle[slot * VECTORS].x];
-        if !is_finite(sum) {
-            sum = zero_delta();
-        }
+    if is_finite(blend.sum) {
+        return blend.sum;
     }
-    return sum;
+    if is_finite(nearest) {
+        return nearest;
+    }
+    return zero_delta();
 }
 
 fn gradient(d: Delta) -> mat3x3<f32> {
@@ -98,7 +108,7 @@ fn gradient(d: Delta) -> mat3x3<f32> {
 fn proper_gradient(d: Delta, slot: u32) -> mat3x3<f32> {
     var f = gradient(d);
     if determinant(f) < SMALLEST_DETERMINANT {
-        let nearest = delta[particle[slot * VECTORS].x];
+        let nearest = delta_of(particle[slot * VECTORS].x);
         f = gradient(nearest);
         if !is_finite(nearest) || determinant(f) < SMALLEST_DETERMINANT {
             f = gradient(zero_delta());
@@ -116,7 +126,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     let at = moving[slot] * 4u;
     let centre = rest[at];
     let d = blended(slot, centre.xyz - params.origin);
-    loose[slot] = select(-1.0, smoothstep(LEFT_LOW, LEFT_HIGH, left), !PAPER && sheds[particle[slot * VECTORS].x] > 0.5);
+    loose[slot] = select(-1.0, smoothstep(LEFT_LOW, LEFT_HIGH, left), !PAPER && sheds(particle[slot * VECTORS].x));
     var a = rest[at + 1u];
     var b = rest[at + 2u];
     var turn = rest[at + 3u];

@@ -22,8 +22,11 @@ const INK: [u8; 4] = [60, 62, 70, 255];
 #[derive(Debug)]
 pub struct ContactSheet {
     frames_total: u32,
-    tiles: Vec<(Raster, f64)>,
+    tiles: Vec<Tile>,
 }
+
+/// A small copy of a frame, and its time in seconds.
+pub type Tile = (Raster, f64);
 
 impl ContactSheet {
     /// For a run of this many frames.
@@ -39,9 +42,20 @@ impl ContactSheet {
 
     /// Keeps a small copy of the frame if it goes on the sheet. Frames come in order.
     pub fn add(&mut self, frame: &Frame) {
-        if self.wants(frame.index) && frame.rgba8.len() == frame.size[0] as usize * frame.size[1] as usize * 4 && !frame.rgba8.is_empty() {
-            self.tiles.push((shrunk(frame.size, &frame.rgba8, fitted(frame.size, TILE_WIDTH)), frame.time_s));
+        if self.wants(frame.index) {
+            self.tiles.extend(ContactSheet::tile(frame));
         }
+    }
+
+    /// A small copy of a frame, as [`ContactSheet::add`] makes them, for whoever makes several at once.
+    pub fn tile(frame: &Frame) -> Option<Tile> {
+        let whole = frame.rgba8.len() == frame.size[0] as usize * frame.size[1] as usize * 4 && !frame.rgba8.is_empty();
+        whole.then(|| (shrunk(frame.size, &frame.rgba8, fitted(frame.size, TILE_WIDTH)), frame.time_s))
+    }
+
+    /// Adds small copies, in order.
+    pub fn extend(&mut self, tiles: impl IntoIterator<Item = Tile>) {
+        self.tiles.extend(tiles);
     }
 
     /// The sheet of what came; none where nothing did. A run that was stopped has fewer pictures.

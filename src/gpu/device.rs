@@ -116,6 +116,12 @@ impl Gpu {
         &self.info.name
     }
 
+    /// Bytes that everything on the device takes now, and that were set aside for it in blocks; none where the backend
+    /// does not tell.
+    pub fn memory(&self) -> Option<(u64, u64)> {
+        self.device.generate_allocator_report().map(|report| (report.total_allocated_bytes, report.total_reserved_bytes))
+    }
+
     /// A device lost in the middle of work, in the user's words.
     pub fn lost(&self, reason: impl std::fmt::Display) -> GpuError {
         GpuError::Lost { device: self.info.name.clone(), reason: reason.to_string() }
@@ -135,6 +141,10 @@ const TIMING: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Featu
 
 /// Features without which no pass of ours runs.
 const REQUIRED: wgpu::Features = wgpu::Features::SUBGROUP.union(wgpu::Features::IMMEDIATES);
+
+/// Memory is set aside in blocks of so many bytes, larger ones as more is needed; the usual 128 MB and more would be
+/// most of what a small scene takes.
+const BLOCK_BYTES: std::ops::Range<u64> = 32 << 20..128 << 20;
 
 /// Every way to a device that our passes can run on.
 const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN.union(wgpu::Backends::METAL).union(wgpu::Backends::DX12);
@@ -192,6 +202,7 @@ async fn open(request: &DeviceRequest) -> Result<Gpu, GpuError> {
         adapters.extend(adapters_of(BACKENDS.difference(wgpu::Backends::VULKAN)).await);
         adapters.sort_by_key(|a| rank(a.get_info().device_type));
     }
+    tracing::debug!(adapters = adapters.len(), "adapters listed");
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     let Some(adapter) = adapters.iter().find(|a| fits(a, request)) else {
         let wanted = match (&request.name_contains, request.cpu) {
@@ -208,9 +219,11 @@ async fn open(request: &DeviceRequest) -> Result<Gpu, GpuError> {
         label: Some("phystalk"),
         required_features: REQUIRED | (adapter.features() & optional),
         required_limits: adapter.limits(),
+        memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: BLOCK_BYTES },
         ..Default::default()
     };
     let (device, queue) =
         adapter.request_device(&descriptor).await.map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
+    tracing::debug!(name = info.name, "device opened");
     Ok(Gpu::from_parts(adapter, device, queue))
 }

@@ -117,9 +117,14 @@ impl Recording {
 impl Gpu {
     /// Submits a recording without waiting for it.
     pub fn submit(&self, recording: &Recording) -> wgpu::SubmissionIndex {
+        self.queue.submit([self.encode(recording)])
+    }
+
+    /// A recording made ready, so that submitting it takes no time.
+    pub fn encode(&self, recording: &Recording) -> wgpu::CommandBuffer {
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("recording") });
         encode(&recording.steps, &mut encoder);
-        self.queue.submit([encoder.finish()])
+        encoder.finish()
     }
 
     /// Runs each step in a pass of its own between two timestamps. Slower than [`Gpu::submit`]:

@@ -6,6 +6,7 @@
 
 use super::extent::Blocks;
 use super::{Access, Constant, Extent, Gpu, GpuError, Kernel, KernelSource, Recording, Tier};
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 const BLOCK: (&str, &str) = ("gpu/block.wgsl", include_str!("../../shaders/gpu/block.wgsl"));
@@ -72,6 +73,13 @@ impl RadixSort {
             histogram: gpu.storage::<u32>(label, histogram)?,
             totals: gpu.storage::<u32>(label, 1 << DIGIT_BITS_MAX)?,
         })
+    }
+
+    /// Compiles what sorts keys of so many bits.
+    pub fn prepare(&self, gpu: &Gpu, bits: u32) {
+        let widths: BTreeSet<u32> = digit_widths(bits).collect();
+        let sources: Vec<KernelSource> = widths.into_iter().flat_map(|width| sources(&self.blocks, self.tier, width)).collect();
+        gpu.prepare(&sources);
     }
 
     /// Sorts the first `extent` pairs by the lowest `bits` bits of their keys, equal keys in the order

@@ -22,7 +22,7 @@ pub use bench::{Bench, bench_recording, bench_render, bench_sort, bench_with};
 pub use passes::kernels;
 pub use picture::{Developed, Image, Picture};
 pub use profile::Profile;
-pub use renderer::{GroundLook, RenderOptions, Renderer};
+pub use renderer::{GroundLook, RenderOptions, Renderer, prepare};
 pub use view::{View, parse_colour};
 
 /// Raised when the picture of the same Gaussians may change.

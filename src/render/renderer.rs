@@ -3,8 +3,9 @@
 use super::buffers::{Capacity, FrameBuffers};
 use super::passes::Passes;
 use super::picture::Picture;
+use super::profile::DEPTH_BITS;
 use super::uniform::{Planes, Uniform, bin_side};
-use super::{Profile, View};
+use super::{Profile, View, shadow};
 use crate::gpu::{Gpu, GpuError, Recording, Tier};
 use crate::skin::Splats;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -142,6 +143,15 @@ impl Shared {
         let room = wanted.saturating_add(wanted / 2).max(PAIRS_MIN);
         self.pairs.fetch_max(room, Ordering::Relaxed).max(room)
     }
+}
+
+/// Compiles the passes of pictures of a size with colour alone.
+pub fn prepare(gpu: &Gpu, size: [u32; 2]) {
+    shadow::prepare(gpu);
+    let shared = Renderer::new(gpu).shared;
+    shared.passes.raster(gpu, shared.bin, false, false);
+    let bins: u32 = size.map(|side| side.div_ceil(shared.bin)).iter().product();
+    [DEPTH_BITS, u32::BITS - bins.leading_zeros()].into_iter().for_each(|bits| shared.passes.sort.prepare(gpu, bits));
 }
 
 /// One frame in flight.

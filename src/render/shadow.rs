@@ -133,7 +133,7 @@ impl Shadow {
             Pass::Receive => vec![&receiver, &bounds, &pyramid, &roof, geometry],
             Pass::Plane => vec![&bounds, &pyramid, &roof, &ground_map],
         };
-        gpu.prepare(&Pass::ALL.map(|pass| pass.source(pyramid_group(gpu))));
+        prepare(gpu);
         let passes = Pass::ALL.into_iter().map(|pass| {
             let kernel = gpu.kernel(&pass.source(pyramid_group(gpu)));
             let bindings = gpu.bind(&kernel, &buffers(pass));
@@ -258,6 +258,11 @@ fn constants() -> Vec<(&'static str, Constant)> {
         ("BOUNDS_GROUP", Constant::U32(BOUNDS_GROUP)),
         ("BOUNDS_GROUPS", Constant::U32(BOUNDS_GROUPS)),
     ]
+}
+
+/// Compiles the passes of the contact shadow.
+pub(super) fn prepare(gpu: &Gpu) {
+    gpu.prepare(&Pass::ALL.map(|pass| pass.source(pyramid_group(gpu))));
 }
 
 /// Every pass of the contact shadow.

@@ -15,7 +15,7 @@ pub mod validate;
 
 pub use bench::bench_skin;
 pub use bind::{Bound, STATIC, bind};
-pub use skinner::{Skinner, VERSION, kernels, shader_text};
+pub use skinner::{Skinner, VERSION, kernels, prepare, shader_text};
 pub use splats::Splats;
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Version of what skinning computes; part of the keys of pictures.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Threads of a workgroup.
 const GROUP_SIZE: u32 = 128;
@@ -50,7 +50,6 @@ pub struct Skinner {
     blend_bindings: wgpu::BindGroup,
     rest_particles: wgpu::Buffer,
     deltas: wgpu::Buffer,
-    sheds: wgpu::Buffer,
     loose: wgpu::Buffer,
     moving: wgpu::Buffer,
     cover: Option<Cover>,
@@ -66,21 +65,19 @@ impl Skinner {
         let origin = centre(rest_particles);
         let shared = Immediates { origin: origin.to_array(), count: 0, span_m: span_m(bound, rest_particles), padding: [0; 3] };
         let relative: Vec<[f32; 4]> = rest_particles.iter().map(|&p| (p - origin).extend(0.0).to_array()).collect();
-        let deltas = gpu.storage::<[f32; 12]>("skin.deltas", rest_particles.len())?;
+        let deltas = gpu.storage::<[u32; 8]>("skin.deltas", rest_particles.len())?;
         let blend = gpu.kernel(&blend_source(packed.vectors, weights));
         let moving = gpu.storage_from("skin.moving", &packed.moving)?;
         let index = gpu.storage_from("skin.particle", &packed.index)?;
         let weight = gpu.storage_from("skin.weight", &packed.weight)?;
-        let sheds = gpu.storage::<f32>("skin.sheds", rest_particles.len())?;
         let loose = gpu.storage::<f32>("skin.loose", packed.moving.len())?;
-        let buffers = [&moving, &index, &weight, &deltas, &splats.rest, &splats.geometry, &sheds, &loose];
+        let buffers = [&moving, &index, &weight, &deltas, &splats.rest, &splats.geometry, &loose];
         Ok(Skinner {
             delta: gpu.kernel(&delta_source(weights)),
             blend_bindings: gpu.bind(&blend, &buffers),
             blend,
             rest_particles: gpu.storage_from("skin.rest_particles", &relative)?,
             deltas,
-            sheds,
             loose,
             moving,
             cover: None,
@@ -105,7 +102,7 @@ impl Skinner {
         if self.gaussians.count == 0 || self.particles.count == 0 {
             return;
         }
-        let bindings = self.gpu.bind(&self.delta, &[motion, &self.rest_particles, &self.deltas, &self.sheds]);
+        let bindings = self.gpu.bind(&self.delta, &[motion, &self.rest_particles, &self.deltas]);
         recording.dispatch_with(&self.delta, &bindings, &self.particles, groups(self.particles.count));
         recording.dispatch_with(&self.blend, &self.blend_bindings, &self.gaussians, groups(self.gaussians.count));
         if let Some(cover) = &self.cover {
@@ -176,7 +173,7 @@ fn delta_source(weights: Weights) -> KernelSource {
         entry: "main",
         parts: vec![AFFINE, DELTA],
         constants: vec![("GROUP_SIZE", Constant::U32(GROUP_SIZE)), ("PAPER", Constant::Bool(weights == Weights::Paper))],
-        bindings: vec![Access::Read, Access::Read, Access::Write, Access::Write],
+        bindings: vec![Access::Read, Access::Read, Access::Write],
         immediate_bytes: size_of::<Immediates>() as u32,
     }
 }
@@ -187,7 +184,7 @@ fn blend_source(vectors: u32, weights: Weights) -> KernelSource {
         entry: "main",
         parts: vec![AFFINE, ROTATION, BLEND],
         constants: [constants(), vec![("VECTORS", Constant::U32(vectors)), ("PAPER", Constant::Bool(weights == Weights::Paper))]].concat(),
-        bindings: [[Access::Read; 5].as_slice(), &[Access::Write, Access::Read, Access::Write]].concat(),
+        bindings: [[Access::Read; 5].as_slice(), &[Access::Write, Access::Write]].concat(),
         immediate_bytes: size_of::<Immediates>() as u32,
     }
 }
@@ -205,6 +202,11 @@ pub(super) fn constants() -> Vec<(&'static str, Constant)> {
         ("POLAR_STEPS", Constant::U32(POLAR_STEPS)),
         ("JACOBI_SWEEPS", Constant::U32(JACOBI_SWEEPS)),
     ]
+}
+
+/// Compiles the passes for K = 8.
+pub fn prepare(gpu: &Gpu, weights: Weights) {
+    gpu.prepare(&[delta_source(weights), blend_source(2, weights)]);
 }
 
 /// Every pass of this room, in the forms that K = 8 and both kinds of weights give.

@@ -78,8 +78,8 @@ const SORT_EVERY: u32 = 4;
 const SORT_BLOCKS_EVERY: u32 = 32;
 /// Particle-substeps of one submit: about 0.1 s on two CPU cores, so that a stop is heard.
 const CPU_BATCH: u32 = 400_000;
-/// Substeps of one submit on a GPU.
-const GPU_BATCH: u32 = 64;
+/// Substeps of one submit on a GPU, the first of a segment and the longest: while little is recorded the device waits.
+const GPU_BATCH: (u32, u32) = (4, 64);
 
 /// Whether something from one time to another is in force at a third.
 pub(super) fn spans(from_s: f64, to_s: f64, time_s: f64) -> bool {
@@ -326,14 +326,15 @@ impl Solver {
         self.set_activations(plan)?;
         let bound = self.bind_both()?;
         self.start_segment();
-        let batch = match self.gpu.tier {
-            Tier::Cpu => (CPU_BATCH / self.params.count).max(1),
+        let (mut batch, longest) = match self.gpu.tier {
+            Tier::Cpu => [(CPU_BATCH / self.params.count).max(1); 2].into(),
             Tier::Gpu => GPU_BATCH,
         };
         let mut earlier: Option<wgpu::SubmissionIndex> = None;
         let mut step = 0;
         while step < plan.substeps {
             let end = (step + batch).min(plan.substeps);
+            batch = (2 * batch).min(longest);
             let mut recording = Recording::default();
             for step in step..end {
                 self.record_substep(plan, step, &bound, &mut recording);

@@ -34,7 +34,7 @@ mod types;
 pub mod validate;
 mod watch;
 
-use crate::gpu::KernelSource;
+use crate::gpu::{Gpu, KernelSource};
 
 #[cfg(test)]
 mod tests;
@@ -61,6 +61,11 @@ pub fn kernels() -> Vec<KernelSource> {
     all.extend(sph::kernels());
     all.extend(rigid::all_kernels());
     all
+}
+
+/// Compiles the passes that every solver asks for.
+pub fn prepare(gpu: &Gpu) {
+    gpu.prepare(&passes::kernels());
 }
 
 /// Shader text of all passes, for the keys of stages.

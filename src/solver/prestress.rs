@@ -16,7 +16,7 @@ use super::state::{ParticleState, RIGID_TAG};
 use super::types::{PrestressReport, SolverError};
 use super::watch::Control;
 use crate::Stop;
-use crate::gpu::{Recording, Tier};
+use crate::gpu::{Readback, Recording, Tier};
 use bytemuck::{Pod, Zeroable};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -353,24 +353,37 @@ impl Solver {
             Tier::Gpu => BATCH,
         };
         let (mut gained, first, mut last) = (0.0, scene.round, ROUNDS);
-        while scene.round <= last && !scene.stop.raised() {
-            let mut recording = Recording::default();
-            for _ in 0..batch {
-                self.record_round(scene, &mut recording);
-            }
-            self.gpu.submit(&recording);
-            let search = self.read_search(scene)?;
+        if first > last || scene.stop.raised() {
+            return Ok(gained);
+        }
+        let mut rounds = self.rounds(scene, batch);
+        loop {
+            self.gpu.queue.submit([rounds]);
+            let (round, back) = (scene.round, Readback::start(&self.gpu, &[(&scene.search, size_of::<Search>() as u64)]));
+            // Made ready while the device works on those before.
+            rounds = self.rounds(scene, batch);
+            let search: Search = back.arrive(&self.gpu)?.part(0, bytemuck::pod_read_unaligned)?;
             let rate = (search.gained - gained) * (BATCH / batch) as f32;
             gained = search.gained;
-            progress(scene.round as f32 / ROUNDS as f32);
-            if search.done != 0 {
-                break;
-            }
+            progress(round as f32 / ROUNDS as f32);
             if last == ROUNDS && rate <= SETTLED * (before + gained) {
-                last = (2 * scene.round - first).min(ROUNDS - 1);
+                last = (2 * round - first).min(ROUNDS - 1);
+            }
+            if search.done != 0 || round > last || scene.stop.raised() {
+                // The rounds that were made ready are not needed.
+                scene.round = round;
+                return Ok(gained);
             }
         }
-        Ok(gained)
+    }
+
+    /// The next rounds, ready to be submitted.
+    fn rounds(&self, scene: &mut Scene, batch: u32) -> wgpu::CommandBuffer {
+        let mut recording = Recording::default();
+        for _ in 0..batch {
+            self.record_round(scene, &mut recording);
+        }
+        self.gpu.encode(&recording)
     }
 
     fn record_round(&self, scene: &mut Scene, recording: &mut Recording) {

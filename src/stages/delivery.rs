@@ -2,9 +2,11 @@
 //! delivered in order.
 
 use super::EngineError;
-use super::keeper::{Keeper, Simulated};
+use super::keeper::{Item, Keeper};
+use super::segments::{Segment, SegmentMeta, SolverTotals};
 use crate::gpu::{Arrived, Gpu, Readback};
 use crate::render::{Developed, Picture};
+use crate::world::Checkpoint;
 use crate::world::measure::{Bodies, MotionFrame, Row, measure};
 use crate::{Frame, Sink, export};
 use std::collections::{BTreeMap, VecDeque};
@@ -17,6 +19,7 @@ const IN_FLIGHT: usize = 3;
 
 /// A frame that the device works on.
 struct Pending {
+    place: u64,
     index: u32,
     time_s: f64,
     motion: Option<Readback>,
@@ -25,24 +28,24 @@ struct Pending {
 
 /// A frame that other threads have done with.
 struct Done {
-    index: u32,
+    place: u64,
     measured: Option<Measured>,
     frame: Option<Frame>,
 }
 
 /// A frame's motion, back on the host.
-pub(super) struct Measured {
-    pub motion: Vec<u8>,
-    pub rows: Vec<Row>,
+struct Measured {
+    motion: Vec<u8>,
+    rows: Vec<Row>,
     /// Particles with a value that is not a number.
-    pub nonfinite: u64,
+    nonfinite: u64,
 }
 
 /// What is delivered next.
 enum Awaited {
-    Frame(u32),
-    /// The end of a segment, once its frames are there.
-    End(Box<Simulated>),
+    Frame(u64),
+    /// The end of a segment, once its frames are there: the state, and what the solver did in it.
+    End(Box<SolverTotals>, Box<Checkpoint>),
 }
 
 /// What came out of the frames that were simulated.
@@ -52,8 +55,17 @@ pub(super) struct Delivered {
     pub rows: Vec<Vec<Row>>,
     /// Most particles of any frame with a value that is not a number.
     pub nonfinite: u64,
-    /// How long the run was held up by encoders and the sink.
+    /// How long the run was held up by encoders, the sink and the store.
     pub held_up: Duration,
+}
+
+/// A segment that is being simulated.
+struct Simulated {
+    segment: Arc<Segment>,
+    /// Bytes of one frame of motion; 0 where motion is not kept.
+    frame_bytes: usize,
+    rows: Vec<Vec<Row>>,
+    nonfinite: u64,
 }
 
 /// The pipeline from the device to the sink and the store.
@@ -64,25 +76,29 @@ pub(super) struct Delivery<'a> {
     sender: Sender<Result<Done, EngineError>>,
     receiver: Receiver<Result<Done, EngineError>>,
     working: usize,
-    early: BTreeMap<u32, Done>,
+    /// How many were taken over.
+    taken: u64,
+    early: BTreeMap<u64, Done>,
     awaited: VecDeque<Awaited>,
-    /// Of the segment that is not complete.
-    measured: Vec<Measured>,
+    /// Segments whose frames come, the oldest first.
+    segments: VecDeque<Simulated>,
     delivered: Delivered,
     keeper: Keeper,
-    /// Receives the PNG of each picture, in order, before the sink does.
-    keep: &'a mut dyn FnMut(&Frame) -> Result<(), EngineError>,
 }
 
 impl<'a> Delivery<'a> {
-    pub fn new(gpu: &'a Gpu, bodies: Arc<Bodies>, keeper: Keeper, keep: &'a mut dyn FnMut(&Frame) -> Result<(), EngineError>) -> Delivery<'a> {
+    pub fn new(gpu: &'a Gpu, bodies: Arc<Bodies>, keeper: Keeper) -> Delivery<'a> {
         let (sender, receiver) = channel();
-        let (pending, awaited, early) = (VecDeque::new(), VecDeque::new(), BTreeMap::new());
-        let (measured, delivered) = (Vec::new(), Delivered::default());
-        Delivery { gpu, bodies, pending, sender, receiver, working: 0, early, awaited, measured, delivered, keeper, keep }
+        let (pending, awaited, segments, early) = (VecDeque::new(), VecDeque::new(), VecDeque::new(), BTreeMap::new());
+        Delivery { gpu, bodies, pending, sender, receiver, working: 0, taken: 0, early, awaited, segments, delivered: Delivered::default(), keeper }
     }
 
-    /// Takes over a frame whose read-backs were started.
+    /// Frames with motion that are pushed from now on are of this segment.
+    pub fn begin(&mut self, segment: &Segment, frame_bytes: usize) {
+        self.segments.push_back(Simulated { segment: Arc::new(segment.clone()), frame_bytes, rows: Vec::new(), nonfinite: 0 });
+    }
+
+    /// Takes over a frame whose read-backs were started. Motion and picture of one frame may come apart.
     pub fn push(
         &mut self,
         index: u32,
@@ -91,28 +107,44 @@ impl<'a> Delivery<'a> {
         picture: Option<Picture>,
         sink: &mut dyn Sink,
     ) -> Result<(), EngineError> {
-        self.awaited.push_back(Awaited::Frame(index));
-        self.pending.push_back(Pending { index, time_s, motion, picture });
+        let place = self.taken;
+        self.taken += 1;
+        self.awaited.push_back(Awaited::Frame(place));
+        self.pending.push_back(Pending { place, index, time_s, motion, picture });
         while self.pending.len() > IN_FLIGHT {
             self.take_one()?;
         }
         self.deliver(sink)
     }
 
-    /// Takes over a segment whose frames were pushed: it is kept when they have come.
-    pub fn end(&mut self, simulated: Simulated) {
-        self.awaited.push_back(Awaited::End(Box::new(simulated)));
+    /// Ends a segment: it is kept when its frames have come.
+    pub fn end(&mut self, totals: SolverTotals, state: Checkpoint) {
+        self.awaited.push_back(Awaited::End(Box::new(totals), Box::new(state)));
     }
 
-    /// Waits for everything, delivers it, and has it on disk.
-    pub fn finish(mut self, sink: &mut dyn Sink) -> Result<Delivered, EngineError> {
+    /// Keeps the state that a scene stands in.
+    pub fn keep_standing(&mut self, key: &str, state: Checkpoint) -> Result<(), EngineError> {
+        self.keeper.keep(Item::Standing(key.to_owned(), state))
+    }
+
+    /// Waits for the device, so that what was pushed comes as soon as it is encoded.
+    pub fn hasten(&mut self) -> Result<(), EngineError> {
         while !self.pending.is_empty() {
             self.take_one()?;
         }
+        Ok(())
+    }
+
+    /// Waits for everything, delivers it, and has it on disk; pictures are kept where `whole`.
+    pub fn finish(mut self, whole: bool, sink: &mut dyn Sink) -> Result<Delivered, EngineError> {
+        self.hasten()?;
         self.deliver(sink)?;
         while self.working > 0 {
             self.receive_one()?;
             self.deliver(sink)?;
+        }
+        if whole {
+            self.keeper.keep(Item::Whole)?;
         }
         self.keeper.finish()?;
         Ok(self.delivered)
@@ -120,11 +152,11 @@ impl<'a> Delivery<'a> {
 
     /// Waits for the oldest frame of the device and hands it to another thread.
     fn take_one(&mut self) -> Result<(), EngineError> {
-        let Some(Pending { index, time_s, motion, picture }) = self.pending.pop_front() else { return Ok(()) };
+        let Some(Pending { place, index, time_s, motion, picture }) = self.pending.pop_front() else { return Ok(()) };
         let motion = motion.map(|readback| readback.arrive(self.gpu)).transpose()?;
         let picture = picture.map(|picture| picture.develop(self.gpu)).transpose()?;
         // Those that fall behind are waited for, so that no animation piles up in memory.
-        while self.working >= 2 * rayon::current_num_threads() + 2 {
+        while self.working >= rayon::current_num_threads() + 2 {
             self.receive_one()?;
         }
         self.working += 1;
@@ -132,7 +164,7 @@ impl<'a> Delivery<'a> {
         rayon::spawn(move || {
             let measured = motion.map(|arrived| measured(&arrived, &bodies)).transpose();
             let frame = picture.map(|picture| encoded(index, time_s, &picture)).transpose();
-            let done = measured.and_then(|measured| Ok(Done { index, measured, frame: frame? }));
+            let done = measured.and_then(|measured| Ok(Done { place, measured, frame: frame? }));
             // The receiver is gone only when the run has already failed.
             let _ = sender.send(done);
         });
@@ -151,26 +183,23 @@ impl<'a> Delivery<'a> {
     fn accept(&mut self, done: Result<Done, EngineError>) -> Result<(), EngineError> {
         self.working -= 1;
         let done = done?;
-        self.early.insert(done.index, done);
+        self.early.insert(done.place, done);
         Ok(())
     }
 
     /// Hands on what is ready, in order.
-    fn deliver(&mut self, sink: &mut dyn Sink) -> Result<(), EngineError> {
+    pub fn deliver(&mut self, sink: &mut dyn Sink) -> Result<(), EngineError> {
         while let Ok(done) = self.receiver.try_recv() {
             self.accept(done)?;
         }
         let clock = Instant::now();
         while let Some(next) = self.awaited.pop_front() {
             match next {
-                Awaited::End(mut simulated) => {
-                    simulated.frames = std::mem::take(&mut self.measured);
-                    self.keeper.keep(simulated)?;
-                }
-                Awaited::Frame(index) => match self.early.remove(&index) {
+                Awaited::End(totals, state) => self.hand_on_end(*totals, *state)?,
+                Awaited::Frame(place) => match self.early.remove(&place) {
                     Some(done) => self.hand_on(done, sink)?,
                     None => {
-                        self.awaited.push_front(Awaited::Frame(index));
+                        self.awaited.push_front(Awaited::Frame(place));
                         break;
                     }
                 },
@@ -181,16 +210,26 @@ impl<'a> Delivery<'a> {
     }
 
     fn hand_on(&mut self, done: Done, sink: &mut dyn Sink) -> Result<(), EngineError> {
-        if let Some(measured) = done.measured {
-            self.delivered.rows.push(measured.rows.clone());
+        if let (Some(measured), Some(simulated)) = (done.measured, self.segments.front_mut()) {
+            simulated.rows.push(measured.rows.clone());
+            simulated.nonfinite = simulated.nonfinite.max(measured.nonfinite);
+            self.delivered.rows.push(measured.rows);
             self.delivered.nonfinite = self.delivered.nonfinite.max(measured.nonfinite);
-            self.measured.push(measured);
+            if simulated.frame_bytes > 0 {
+                self.keeper.keep(Item::Motion(simulated.segment.clone(), measured.motion))?;
+            }
         }
         if let Some(frame) = done.frame {
-            (self.keep)(&frame)?;
+            self.keeper.keep(Item::Picture(frame.png.clone()))?;
             sink.frame(frame);
         }
         Ok(())
+    }
+
+    fn hand_on_end(&mut self, totals: SolverTotals, state: Checkpoint) -> Result<(), EngineError> {
+        let Some(Simulated { segment, frame_bytes, rows, nonfinite }) = self.segments.pop_front() else { return Ok(()) };
+        let meta = SegmentMeta { rows, solver: SolverTotals { nonfinite, ..totals }, frame_bytes };
+        self.keeper.keep(Item::End(segment, Box::new(meta), state))
     }
 }
 

@@ -4,7 +4,7 @@ use super::keys::{self, StillKeys};
 use super::segments::{self, Segment};
 use super::still::{self, Made, Memory};
 use super::{Action, EngineError, Metrics, Plan, PlannedStage, Quality, RunOptions, StageName, reasons};
-use crate::gpu::{DeviceRequest, Gpu, Tier};
+use crate::gpu::{DeviceRequest, Gpu, GpuError, Tier};
 use crate::proxy::Solid;
 use crate::render::{Image, RenderOptions, Renderer, View};
 use crate::scene::Gaussians;
@@ -14,6 +14,7 @@ use crate::store::Store;
 use crate::world::{self, Facts, Figure, Prepared, Resolved};
 use crate::{Sink, Stop};
 use std::path::Path;
+use std::thread::JoinHandle;
 
 /// Owns the device, opened on first need, the store, and what the last run prepared. One engine
 /// thread owns an engine; nothing in it is async.
@@ -22,6 +23,8 @@ pub struct Engine {
     pub(super) store: Store,
     request: DeviceRequest,
     pub(super) gpu: Option<Gpu>,
+    /// The device that another thread is opening.
+    opening: Option<JoinHandle<Result<Gpu, GpuError>>>,
     pub(super) memory: Memory,
     /// The last figure and the key of what it was made of.
     pub(super) figure: Option<(String, Figure)>,
@@ -53,10 +56,25 @@ pub(super) struct Ready {
     pub draft: bool,
 }
 
+impl Drop for Engine {
+    fn drop(&mut self) {
+        // A driver that is still opening when the process ends may crash.
+        let _ = self.opening.take().map(JoinHandle::join);
+    }
+}
+
 impl Engine {
     /// An engine that will open the requested device when it needs one.
     pub fn new(store: Store, device: DeviceRequest) -> Engine {
-        Engine { store, request: device, gpu: None, memory: Memory::default(), figure: None }
+        Engine { store, request: device, gpu: None, opening: None, memory: Memory::default(), figure: None }
+    }
+
+    /// Begins to open the device on another thread, so that reading a scene need not wait for it.
+    pub fn open_ahead(&mut self) {
+        if self.gpu.is_none() && self.opening.is_none() {
+            let request = self.request.clone();
+            self.opening = Some(std::thread::spawn(move || Gpu::open(&request)));
+        }
     }
 
     /// Where results are kept.
@@ -67,7 +85,9 @@ impl Engine {
     /// The device, opened on the first call.
     pub fn device(&mut self) -> Result<&Gpu, EngineError> {
         if self.gpu.is_none() {
-            self.gpu = Some(Gpu::open(&self.request)?);
+            // A panic on that thread has already ended the process through the panic hook.
+            let opened = self.opening.take().and_then(|thread| thread.join().ok());
+            self.gpu = Some(opened.unwrap_or_else(|| Gpu::open(&self.request))?);
         }
         self.gpu.as_ref().ok_or_else(|| EngineError::Unstable("the device was closed".to_owned()))
     }
@@ -82,9 +102,9 @@ impl Engine {
     /// Reads the scene and computes every key; nothing is simulated or drawn.
     pub(super) fn ready(&mut self, spec: &Spec, base: &Path, options: &RunOptions) -> Result<Ready, EngineError> {
         spec.validate()?;
+        let (scene_key, prepared) = still::scene(&mut self.memory, &self.store, spec, base)?;
         let tier = self.device()?.tier;
         let draft = options.quality.map_or(tier == Tier::Cpu, |q| q == Quality::Draft);
-        let (scene_key, prepared) = still::scene(&mut self.memory, &self.store, spec, base)?;
         let resolved = world::resolve(spec, &prepared.value, draft, options.size, options.camera);
         let keys = keys::still(spec, scene_key, &resolved);
         let gpu = self.device()?;

@@ -1,45 +1,49 @@
-//! Segments on their way to the store, on a thread of its own: hashing and the disk hold up nobody.
+//! What a run makes on its way to the store, on a thread of its own: hashing and the disk hold up nobody.
 
 use super::EngineError;
-use super::delivery::Measured;
-use super::segments::{self, Segment, SegmentMeta, SolverTotals};
-use crate::store::Store;
+use super::segments::{self, Segment, SegmentMeta};
+use crate::store::{BlobWriter, EntryWriter, Store, StoreError};
 use crate::world::Checkpoint;
+use std::io::Write;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
-/// Segments that may wait for the disk before the run waits for it.
-const WAITING: usize = 2;
+/// Frames that may wait for the disk before the run waits for it.
+const WAITING: usize = 16;
 
-/// A segment that was simulated to its end.
-pub(super) struct Simulated {
-    pub segment: Segment,
-    pub totals: SolverTotals,
-    /// Bytes of one frame of motion; 0 where motion is not kept.
-    pub frame_bytes: usize,
-    /// The state at its end.
-    pub checkpoint: Checkpoint,
-    /// Its frames.
-    pub frames: Vec<Measured>,
+/// Something to be kept.
+pub(super) enum Item {
+    /// The state that a scene stands in, under its key.
+    Standing(String, Checkpoint),
+    /// One frame of the motion of a segment.
+    Motion(Arc<Segment>, Vec<u8>),
+    /// The end of a segment: the state there, and what it says of itself.
+    End(Arc<Segment>, Box<SegmentMeta>, Checkpoint),
+    /// The PNG of the next picture.
+    Picture(Arc<[u8]>),
+    /// All pictures came.
+    Whole,
 }
 
-/// Writes segments in the order they come.
+/// Writes things in the order they come.
 pub(super) struct Keeper {
     // Until it is finished.
-    sender: Option<SyncSender<Box<Simulated>>>,
+    sender: Option<SyncSender<Item>>,
     thread: Option<JoinHandle<Result<(), EngineError>>>,
 }
 
 impl Keeper {
-    pub fn new(store: &Store) -> Keeper {
+    /// Pictures go into `album`, where there is one.
+    pub fn new(store: &Store, album: Option<Album>) -> Keeper {
         let (sender, incoming) = sync_channel(WAITING);
         let store = store.clone();
-        Keeper { sender: Some(sender), thread: Some(std::thread::spawn(move || write(&store, &incoming))) }
+        Keeper { sender: Some(sender), thread: Some(std::thread::spawn(move || write(&store, album, &incoming))) }
     }
 
-    /// Hands a segment over.
-    pub fn keep(&mut self, simulated: Box<Simulated>) -> Result<(), EngineError> {
-        let sent = self.sender.as_ref().is_some_and(|sender| sender.send(simulated).is_ok());
+    /// Hands something over.
+    pub fn keep(&mut self, item: Item) -> Result<(), EngineError> {
+        let sent = self.sender.as_ref().is_some_and(|sender| sender.send(item).is_ok());
         // A thread that ended before its time says why.
         if sent { Ok(()) } else { self.join() }
     }
@@ -63,12 +67,60 @@ impl Drop for Keeper {
     }
 }
 
-fn write(store: &Store, incoming: &Receiver<Box<Simulated>>) -> Result<(), EngineError> {
-    for simulated in incoming {
-        let Simulated { segment, mut totals, frame_bytes, checkpoint, frames } = *simulated;
-        totals.nonfinite = frames.iter().map(|f| f.nonfinite).max().unwrap_or(0);
-        let meta = SegmentMeta { rows: frames.iter().map(|f| f.rows.clone()).collect(), solver: totals, frame_bytes };
-        segments::keep(store, &segment, &meta, frames.iter().map(|f| f.motion.as_slice()), &checkpoint.bytes()?)?;
+fn write(store: &Store, mut album: Option<Album>, incoming: &Receiver<Item>) -> Result<(), EngineError> {
+    // The motion of the segment that has not ended.
+    let mut open: Option<(EntryWriter, BlobWriter)> = None;
+    for item in incoming {
+        match item {
+            Item::Standing(key, state) => {
+                let entry = store.begin("prestress", &key)?;
+                entry.put("state", &state.bytes()?)?;
+                entry.finish(serde_json::json!({}))?;
+            }
+            Item::Motion(segment, frame) => {
+                let (_, blob) = match &mut open {
+                    Some(open) => open,
+                    none => none.insert(segments::begin(store, &segment)?),
+                };
+                append(store, blob, &frame)?;
+            }
+            Item::End(segment, meta, state) => segments::keep(store, &segment, open.take(), &meta, &state.bytes()?)?,
+            Item::Picture(png) => album.as_mut().map_or(Ok(()), |album| album.add(&png))?,
+            Item::Whole => album.take().map_or(Ok(()), Album::finish)?,
+        }
     }
     Ok(())
+}
+
+fn append(store: &Store, blob: &mut BlobWriter, bytes: &[u8]) -> Result<(), EngineError> {
+    Ok(blob.write_all(bytes).map_err(|source| StoreError::Io { doing: "written", path: store.dir().to_owned(), source })?)
+}
+
+/// The pictures of a run on their way into the store: one blob, and where each ends in it. Dropped before it is
+/// finished, it leaves nothing.
+pub(super) struct Album {
+    store: Store,
+    entry: EntryWriter,
+    blob: BlobWriter,
+    ends: Vec<u64>,
+    fps: u32,
+}
+
+impl Album {
+    pub fn begin(store: &Store, key: &str, fps: u32) -> Result<Album, EngineError> {
+        let entry = store.begin("picture", key)?;
+        Ok(Album { blob: entry.write("frames")?, entry, store: store.clone(), ends: Vec::new(), fps })
+    }
+
+    fn add(&mut self, png: &[u8]) -> Result<(), EngineError> {
+        append(&self.store, &mut self.blob, png)?;
+        self.ends.push(self.blob.bytes());
+        Ok(())
+    }
+
+    fn finish(self) -> Result<(), EngineError> {
+        self.blob.finish()?;
+        self.entry.finish(serde_json::json!({ "ends": self.ends, "fps": self.fps }))?;
+        Ok(())
+    }
 }

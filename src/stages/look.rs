@@ -8,7 +8,6 @@ use crate::render::Image;
 use crate::spec::{Auto, Spec};
 use crate::world::{self, Figure};
 use crate::{Frame, Sink, Stop, proxy};
-use serde_json::{Map, Value, json};
 use std::path::Path;
 
 impl Engine {
@@ -36,18 +35,18 @@ impl Engine {
         Ok(())
     }
 
-    /// What `"auto"` comes to, by path, known without a run: duration, ground, each object's stiffness. Needs no device.
-    pub fn automatic(&mut self, spec: &Spec, base: &Path, options: &RunOptions) -> Result<Map<String, Value>, EngineError> {
+    /// What `"auto"` comes to at a path, known without a run: duration, ground, an object's stiffness. Needs no device.
+    /// Stiffness is computed when it is asked for, once.
+    pub fn automatic(&mut self, spec: &Spec, base: &Path, options: &RunOptions, path: &str) -> Result<Option<f64>, EngineError> {
         let (key, prepared) = still::scene(&mut self.memory, &self.store, spec, base)?;
         let prepared = prepared.value;
-        let mut values = world::resolve(spec, &prepared, false, options.size, options.camera).report(spec);
         for (index, object) in spec.objects.iter().enumerate() {
             let parts = object.parts.iter().map(|part| (format!("object.{}.part.{}", object.name, part.name), &part.material));
-            let pieces = std::iter::once((format!("object.{}", object.name), &object.material)).chain(parts);
+            let mut pieces = std::iter::once((format!("object.{}", object.name), &object.material)).chain(parts);
+            let Some((_, material)) = pieces.find(|(owner, _)| path == format!("{owner}.material.young_pa")) else { continue };
             // What flows goes by the depth of its solid, which is known after a run.
-            let asked: Vec<_> = pieces.filter(|(_, m)| m.stands() && m.young_pa() == Some(Auto::Auto)).collect();
-            if asked.is_empty() {
-                continue;
+            if !material.stands() || material.young_pa() != Some(Auto::Auto) {
+                return Ok(None);
             }
             let density = object.material.density_kg_m3();
             let inputs = format!("{key} {index} {} {density}", prepared.ground_m);
@@ -55,11 +54,10 @@ impl Engine {
                 let members = prepared.gaussians.subset(&prepared.members(index as u32, false));
                 proxy::young_auto(&proxy::stance_of(&members, prepared.ground_m as f32), density).value_pa
             });
-            for (path, material) in asked {
-                values.insert(format!("{path}.material.young_pa"), json!(value_pa * material.density_kg_m3() / density));
-            }
+            return Ok(Some(value_pa * material.density_kg_m3() / density));
         }
-        Ok(values)
+        let resolved = world::resolve(spec, &prepared, false, options.size, options.camera).report(spec);
+        Ok(resolved.get(path).and_then(serde_json::Value::as_f64))
     }
 }
 

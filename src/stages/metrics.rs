@@ -22,6 +22,9 @@ pub struct Metrics {
     pub resolved: serde_json::Map<String, serde_json::Value>,
     /// Wall seconds of each stage, and of parts of it under `stage.part`; parts run side by side.
     pub seconds: BTreeMap<String, f64>,
+    /// What the run took of memory.
+    #[serde(default)]
+    pub memory: MemoryMetrics,
     /// Simulated objects, by name.
     pub objects: BTreeMap<String, ObjectMetrics>,
     /// The spec's events, in its order, and when they happened.
@@ -58,6 +61,18 @@ pub struct SolverMetrics {
     pub limited: u64,
     /// Wall seconds of the simulation.
     pub simulate_s: f64,
+}
+
+/// Memory, bytes; 0 where it could not be told.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default)]
+pub struct MemoryMetrics {
+    /// Most that was in use on the device while it simulated.
+    pub device_bytes: u64,
+    /// Most that was set aside there in blocks.
+    pub device_reserved_bytes: u64,
+    /// Most that the process had in main memory until the end of the run, what it shares with the device included.
+    pub host_peak_bytes: u64,
 }
 
 /// Smallest and largest substep, seconds.

@@ -2,20 +2,19 @@
 
 use super::delivery::Delivery;
 use super::engine::{Engine, Ready};
-use super::keeper::{Keeper, Simulated};
+use super::keeper::{Album, Keeper};
 use super::run::BACKGROUND;
 use super::segments::{self, Kept, Segment, SolverTotals};
-use super::{EngineError, StageName, pack, summary};
+use super::{EngineError, MemoryMetrics, StageName, pack, summary};
 use crate::gpu::{Gpu, Readback};
 use crate::render::Picture;
 use crate::spec::Spec;
-use crate::store::{BlobWriter, EntryWriter, Store, StoreError};
+use crate::store::Store;
 use crate::world::bodies::Matter;
 use crate::world::measure::{Bodies, MOTION_WORDS, Row};
 use crate::world::{Figure, World};
-use crate::{Frame, Progress, Sink, Stop};
+use crate::{Progress, Sink, Stop};
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -30,6 +29,7 @@ pub(super) struct Played {
     pub figure: Option<Figure>,
     /// Wall seconds of the parts of a stage.
     pub parts: BTreeMap<&'static str, f64>,
+    pub memory: MemoryMetrics,
 }
 
 /// The motion of one run.
@@ -43,6 +43,8 @@ pub(super) struct Motion<'a> {
     pub keep_motion: bool,
     /// The world, once something has to be simulated.
     world: Option<World>,
+    /// The frame that was drawn before it was simulated.
+    drawn: Option<u32>,
     played: Played,
     started: Instant,
 }
@@ -62,19 +64,18 @@ impl<'a> Motion<'a> {
             bodies: Arc::new(matter.bodies.clone()),
             keep_motion,
             world: None,
-            played: Played { rows, totals, stopped: false, figure: None, parts },
+            drawn: None,
+            played: Played { rows, totals, stopped: false, figure: None, parts, memory: MemoryMetrics::default() },
             started: Instant::now(),
         })
     }
 
     /// Goes through all segments; with a figure, draws every frame.
     pub fn play(mut self, figure: Option<Figure>, sink: &mut dyn Sink, stop: &Stop) -> Result<Played, EngineError> {
-        let clock = Instant::now();
-        let mut album = figure.is_some().then(|| Album::begin(&self.store, &self.ready.picture)).transpose()?;
+        let album = figure.is_some().then(|| Album::begin(&self.store, &self.ready.picture, self.spec.time.fps)).transpose()?;
         self.played.figure = figure;
-        let mut keep = |frame: &Frame| album.as_mut().map_or(Ok(()), |album| album.add(frame));
         let gpu = self.gpu.clone();
-        let mut delivery = Delivery::new(&gpu, self.bodies.clone(), Keeper::new(&self.store), &mut keep);
+        let mut delivery = Delivery::new(&gpu, self.bodies.clone(), Keeper::new(&self.store, album));
         let mut before: Option<Kept> = None;
         for segment in &self.ready.segments {
             let kept = segments::get(&self.store, segment)?;
@@ -89,7 +90,7 @@ impl<'a> Motion<'a> {
                     before = Some(kept);
                 }
                 None => {
-                    self.wake(before.take(), segment, sink, stop)?;
+                    self.wake(before.take(), segment, &mut delivery, sink, stop)?;
                     self.played.stopped = self.simulate(segment, &mut delivery, sink, stop)?;
                 }
             }
@@ -99,15 +100,14 @@ impl<'a> Motion<'a> {
             }
         }
         let last = Instant::now();
-        let delivered = delivery.finish(sink)?;
+        tracing::debug!("simulated");
+        let delivered = delivery.finish(!self.played.stopped, sink)?;
+        self.spend("picture.last frames", last);
+        tracing::debug!("delivered and kept");
         self.played.rows.extend(delivered.rows);
         self.played.totals.nonfinite = self.played.totals.nonfinite.max(delivered.nonfinite);
-        if let Some(album) = album {
-            album.finish(self.spec.time.fps, self.played.stopped)?;
-        }
-        self.spend("picture.after the last frame", last);
         self.played.parts.insert("picture.waiting for encoders", delivered.held_up.as_secs_f64());
-        self.played.parts.insert("simulate and picture", clock.elapsed().as_secs_f64());
+        self.played.memory.host_peak_bytes = host_peak_bytes();
         Ok(self.played)
     }
 
@@ -134,43 +134,68 @@ impl<'a> Motion<'a> {
     }
 
     /// Makes the world, at the state before a segment.
-    fn wake(&mut self, before: Option<Kept>, segment: &Segment, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
+    fn wake(
+        &mut self,
+        before: Option<Kept>,
+        segment: &Segment,
+        delivery: &mut Delivery,
+        sink: &mut dyn Sink,
+        stop: &Stop,
+    ) -> Result<(), EngineError> {
         if self.world.is_some() {
             return Ok(());
         }
         let clock = Instant::now();
         let mut world = World::new(&self.gpu, self.spec, self.matter, &self.ready.resolved)?;
         let made = self.spend("simulate.solver", clock);
+        tracing::debug!("solver made");
         match before {
             Some(kept) => world.restore(segment.first.saturating_sub(1), &kept.checkpoint()?)?,
             None => {
-                self.stand(&mut world, sink, stop)?;
+                self.draw_captured(&mut world, delivery, sink)?;
+                self.stand(&mut world, delivery, sink, stop)?;
                 world.place(self.spec, self.matter)?;
             }
         }
         self.spend("simulate.standing", made);
+        tracing::debug!("stands");
         self.world = Some(world);
         self.played.totals.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
 
+    /// Draws frame 0 before the stress is known that holds it, where it shows the captured pose: no picture depends on
+    /// stress.
+    fn draw_captured(&mut self, world: &mut World, delivery: &mut Delivery, sink: &mut dyn Sink) -> Result<(), EngineError> {
+        let Some(figure) = self.played.figure.as_mut().filter(|_| World::starts_as_captured(self.spec)) else { return Ok(()) };
+        world.show();
+        figure.pose(world.motion());
+        let picture = draw(figure, 0, self.spec, self.ready)?;
+        delivery.push(0, self.ready.resolved.time_s(0, self.spec.time.fps), None, Some(picture), sink)?;
+        self.drawn = Some(0);
+        delivery.hasten()
+    }
+
     /// The prestress, from the store or solved: gravity, support and matter decide it, launch and events do not.
-    fn stand(&self, world: &mut World, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
+    fn stand(&self, world: &mut World, delivery: &mut Delivery, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
         if let Some(entry) = pack::find(&self.store, "prestress", &self.ready.prestress)?
             && let Some(state) = pack::read::<u8>(&entry, "state")?
         {
             return Ok(world.restore(0, &state)?);
         }
+        let mut failed = Ok(());
         let mut progress = |share: f32| {
             let done = (share.clamp(0.0, 1.0) * 100.0) as u64;
             sink.progress(Progress { stage: "standing", done, total: 100, seconds_left: None });
+            if failed.is_ok() {
+                failed = delivery.deliver(sink);
+            }
         };
         let report = world.prestress(self.spec, stop, &mut progress)?;
+        failed?;
         report.warnings.iter().for_each(|w| sink.warning(w));
         if !stop.raised() {
-            let entry = self.store.begin("prestress", &self.ready.prestress)?;
-            entry.put("state", &world.checkpoint()?)?;
-            entry.finish(serde_json::json!({}))?;
+            delivery.keep_standing(&self.ready.prestress, world.start_checkpoint()?)?;
         }
         Ok(())
     }
@@ -180,6 +205,7 @@ impl<'a> Motion<'a> {
         let Some(mut world) = self.world.take() else { return Ok(false) };
         let mut totals = SolverTotals::default();
         let bytes = (self.bodies.mass_kg.len() * MOTION_WORDS * 4) as u64;
+        delivery.begin(segment, if self.keep_motion { bytes as usize } else { 0 });
         let mut stopped = false;
         for index in segment.first..=segment.last {
             let clock = Instant::now();
@@ -197,24 +223,31 @@ impl<'a> Motion<'a> {
             let stepped = self.spend("simulate.frames", clock);
             totals.seconds += (stepped - clock).as_secs_f64();
             let picture = match &mut self.played.figure {
-                Some(figure) => {
+                Some(figure) if self.drawn != Some(index) => {
                     figure.pose(world.motion());
                     Some(draw(figure, index, self.spec, self.ready)?)
                 }
-                None => None,
+                _ => None,
             };
             self.spend("picture.drawing", stepped);
             delivery.push(index, self.ready.resolved.time_s(index, self.spec.time.fps), Some(back), picture, sink)?;
             progress(StageName::Simulate, index, self.started, self.ready, sink);
         }
         self.played.totals.add(&totals);
+        self.weigh();
         if !stopped {
-            let frame_bytes = if self.keep_motion { bytes as usize } else { 0 };
-            let checkpoint = world.start_checkpoint()?;
-            delivery.end(Simulated { segment: segment.clone(), totals, frame_bytes, checkpoint, frames: Vec::new() });
+            delivery.end(totals, world.start_checkpoint()?);
         }
         self.world = Some(world);
         Ok(stopped)
+    }
+
+    /// Notes how much memory is in use.
+    fn weigh(&mut self) {
+        let (used, reserved) = self.gpu.memory().unwrap_or_default();
+        let memory = &mut self.played.memory;
+        memory.device_bytes = memory.device_bytes.max(used);
+        memory.device_reserved_bytes = memory.device_reserved_bytes.max(reserved);
     }
 
     /// Adds the time since `start` to a part; now.
@@ -223,6 +256,13 @@ impl<'a> Motion<'a> {
         *self.played.parts.entry(part).or_default() += (now - start).as_secs_f64();
         now
     }
+}
+
+/// Most main memory that this process has had, where the system tells.
+fn host_peak_bytes() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    peak.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok()).map_or(0, |kib| kib * 1024)
 }
 
 fn progress(stage: StageName, index: u32, started: Instant, ready: &Ready, sink: &mut dyn Sink) {
@@ -235,35 +275,4 @@ fn draw(figure: &mut Figure, index: u32, spec: &Spec, ready: &Ready) -> Result<P
     let time_s = ready.resolved.time_s(index, spec.time.fps);
     let background = crate::render::parse_colour(&spec.output.background).unwrap_or(BACKGROUND);
     Ok(figure.draw(&ready.resolved.camera, time_s, ready.resolved.size, background)?)
-}
-
-/// The pictures of a run on their way into the store: one blob, and where each ends in it.
-struct Album {
-    entry: EntryWriter,
-    blob: BlobWriter,
-    store: Store,
-    ends: Vec<u64>,
-}
-
-impl Album {
-    fn begin(store: &Store, key: &str) -> Result<Album, EngineError> {
-        let entry = store.begin("picture", key)?;
-        Ok(Album { blob: entry.write("frames")?, entry, store: store.clone(), ends: Vec::new() })
-    }
-
-    fn add(&mut self, frame: &Frame) -> Result<(), EngineError> {
-        let failed = |source| StoreError::Io { doing: "written", path: self.store.dir().to_owned(), source };
-        self.blob.write_all(&frame.png).map_err(failed)?;
-        self.ends.push(self.blob.bytes());
-        Ok(())
-    }
-
-    /// Keeps all pictures, or none of a run that was stopped.
-    fn finish(self, fps: u32, stopped: bool) -> Result<(), EngineError> {
-        self.blob.finish()?;
-        if !stopped {
-            self.entry.finish(serde_json::json!({ "ends": self.ends, "fps": fps }))?;
-        }
-        Ok(())
-    }
 }

@@ -2,12 +2,13 @@
 
 use super::engine::{Engine, Ready, Report};
 use super::motion::Motion;
-use super::{Action, EngineError, RunOptions, StageName, pack, summary};
+use super::{Action, EngineError, Metrics, Plan, RunOptions, StageName, pack, summary};
+use crate::gpu::Gpu;
 use crate::spec::{Auto, Spec};
 use crate::store::Store;
 use crate::world::Figure;
 use crate::world::bodies::{Matter, matter};
-use crate::{Frame, Sink, Stop};
+use crate::{Frame, Sink, Stop, render, skin, solver};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
@@ -33,13 +34,21 @@ pub(super) fn run(
     seconds.insert(StageName::Scene, clock.elapsed().as_secs_f64());
     let mut plan = engine.plan_of(&ready, spec, options, previous);
     engine.memory.told();
-    let clock = Instant::now();
-    let solids = engine.solids(spec, &ready)?;
-    seconds.insert(StageName::Proxy, clock.elapsed().as_secs_f64());
-    let clock = Instant::now();
-    let bound = engine.bound(spec, &ready, &solids.value)?;
-    seconds.insert(StageName::Bind, clock.elapsed().as_secs_f64());
+    tracing::debug!("planned");
+    let gpu = engine.device()?.clone();
+    // The driver compiles while the scene is made solid.
+    let (solids, bound) = std::thread::scope(|scope| -> Result<_, EngineError> {
+        scope.spawn(|| prepare(&plan, spec, ready.resolved.size, &gpu));
+        let clock = Instant::now();
+        let solids = engine.solids(spec, &ready)?;
+        seconds.insert(StageName::Proxy, clock.elapsed().as_secs_f64());
+        let clock = Instant::now();
+        let bound = engine.bound(spec, &ready, &solids.value)?;
+        seconds.insert(StageName::Bind, clock.elapsed().as_secs_f64());
+        Ok((solids, bound))
+    })?;
 
+    tracing::debug!("solid and bound");
     let matter = matter(spec, &ready.prepared.value, &solids.value);
     let mut warnings = warnings(&ready, &solids.value, &matter);
     let motion = Motion::new(engine, spec, &ready, &matter)?;
@@ -57,6 +66,7 @@ pub(super) fn run(
     let pictures_kept = wants_pictures && plan.stage(StageName::Picture).is_some_and(|s| s.action == Action::Hit);
     let clock = Instant::now();
     let figure = if wants_pictures && !pictures_kept { Some(take_figure(engine, spec, &ready, &bound.value, &matter)?) } else { None };
+    tracing::debug!("figure made");
     let figure_s = clock.elapsed().as_secs_f64();
     let done = motion.play(figure, sink, stop)?;
     if let Some(figure) = done.figure {
@@ -81,10 +91,23 @@ pub(super) fn run(
     // Whoever gave a stiffness hears what it was simulated with.
     done.totals.softened.iter().for_each(|text| sink.warning(text));
     warnings.extend(done.totals.softened.iter().cloned());
-    let parts = [("picture.figure", figure_s)].into_iter().chain(done.parts).map(|(part, s)| (part.to_owned(), s));
+    let parts = [("picture.figure", figure_s)].into_iter().chain(done.parts.clone()).map(|(part, s)| (part.to_owned(), s));
     let seconds = seconds.iter().map(|(stage, s)| (stage.as_str().to_owned(), *s)).chain(parts).collect();
     let metrics = summary::metrics(spec, &ready, &matter, &done.rows, &done.totals, seconds, engine.device()?);
+    let metrics = Metrics { memory: done.memory, ..metrics };
     Ok(Report { plan, metrics, camera: ready.resolved.camera, stopped: done.stopped, warnings })
+}
+
+/// Has the passes compiled that this run will ask for, as far as its plan tells.
+fn prepare(plan: &Plan, spec: &Spec, size: [u32; 2], gpu: &Gpu) {
+    let works = |stage| plan.stage(stage).is_some_and(|s| matches!(s.action, Action::Run | Action::Resume));
+    if works(StageName::Simulate) {
+        solver::prepare(gpu);
+    }
+    if works(StageName::Picture) {
+        skin::prepare(gpu, spec.skin.weights);
+        render::prepare(gpu, size);
+    }
 }
 
 fn warnings(ready: &Ready, solids: &[crate::proxy::Solid], matter: &Matter) -> Vec<String> {

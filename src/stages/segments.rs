@@ -6,11 +6,10 @@
 
 use super::{EngineError, keys, pack};
 use crate::spec::Spec;
-use crate::store::{Entry, Store, StoreError};
+use crate::store::{BlobWriter, Entry, EntryWriter, Store};
 use crate::world::measure::Row;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::Write;
 
 /// Length of a segment.
 const SEGMENT_S: f64 = 0.25;
@@ -125,22 +124,28 @@ pub(super) fn get(store: &Store, segment: &Segment) -> Result<Option<Kept>, Engi
     Ok(meta.map(|meta| Kept { meta, entry }))
 }
 
-/// Keeps a finished segment, its motion frame by frame.
-pub(super) fn keep<'a>(
+/// Starts to keep a segment, with its motion, frame after frame.
+pub(super) fn begin(store: &Store, segment: &Segment) -> Result<(EntryWriter, BlobWriter), EngineError> {
+    let entry = store.begin("motion", &segment.key)?;
+    let motion = entry.write("motion")?;
+    Ok((entry, motion))
+}
+
+/// Keeps a finished segment; without motion where none was begun.
+pub(super) fn keep(
     store: &Store,
     segment: &Segment,
+    begun: Option<(EntryWriter, BlobWriter)>,
     meta: &SegmentMeta,
-    motion: impl Iterator<Item = &'a [u8]>,
     checkpoint: &[u8],
 ) -> Result<(), EngineError> {
-    let entry = store.begin("motion", &segment.key)?;
-    if meta.frame_bytes > 0 {
-        let mut blob = entry.write("motion")?;
-        for frame in motion {
-            blob.write_all(frame).map_err(|source| StoreError::Io { doing: "written", path: store.dir().to_owned(), source })?;
+    let entry = match begun {
+        Some((entry, motion)) => {
+            motion.finish()?;
+            entry
         }
-        blob.finish()?;
-    }
+        None => store.begin("motion", &segment.key)?,
+    };
     entry.put("checkpoint", checkpoint)?;
     entry.finish(serde_json::to_value(meta).unwrap_or_default())?;
     Ok(())

@@ -2,7 +2,7 @@
 
 use super::engine::Ready;
 use super::segments::SolverTotals;
-use super::{EventMetrics, ExpectationResult, Metrics, ObjectMetrics, SolverMetrics, SubstepRange, lookup};
+use super::{EventMetrics, ExpectationResult, MemoryMetrics, Metrics, ObjectMetrics, SolverMetrics, SubstepRange, lookup};
 use crate::gpu::Gpu;
 use crate::render::View;
 use crate::solver::Advance;
@@ -109,6 +109,7 @@ pub(super) fn metrics(
         },
         resolved: resolved(spec, ready, matter),
         seconds,
+        memory: MemoryMetrics::default(),
         objects: spec.objects.iter().enumerate().map(|(i, o)| (o.name.clone(), object(spec, ready, matter, rows, i))).collect(),
         events: events(spec, totals, duration_s),
         expect: Vec::new(),

@@ -26,9 +26,17 @@ fn seen_moving(spec: &Spec, base: &Path, frames: &[u32]) -> Vec<f32> {
     let matter = matter(spec, prepared, &solids);
     let (gpu, stop) = (Gpu::shared_for_tests().unwrap(), Stop::default());
     let mut world = World::new(&gpu, spec, &matter, &ready.resolved).unwrap();
+    let rest = &matter.particles.position_m;
+    let shown = |world: &mut World| -> Vec<[u32; 8]> {
+        world.show();
+        gpu.read(world.motion(), rest.len()).unwrap()
+    };
+    assert!(World::starts_as_captured(spec));
+    let captured = shown(&mut world);
     world.prestress(spec, &stop, &mut |_| {}).unwrap();
     world.place(spec, &matter).unwrap();
-    let rest = &matter.particles.position_m;
+    // Frame 0 may be drawn before the stress is known that it stands with.
+    assert!(captured == shown(&mut world));
     let splats = Splats::new(&gpu, &prepared.gaussians, prepared.world_from_sh, &prepared.object_of).unwrap();
     let skinner = Skinner::new(&gpu, &splats, &bound, rest, spec.skin.weights).unwrap();
     let height_m = prepared.object_facts(spec)[0].height_m() as f32;

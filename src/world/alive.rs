@@ -94,6 +94,11 @@ impl World {
         self.solver.prestress(&standing, stop, progress)
     }
 
+    /// Whether every object starts in its captured pose, so that [`World::place`] moves nothing.
+    pub fn starts_as_captured(spec: &Spec) -> bool {
+        spec.objects.iter().all(|object| object.offset_m == [0.0; 3] && object.rotate_deg == [0.0; 3])
+    }
+
     /// Moves every object to where the spec starts it, with its velocity and spin.
     pub fn place(&mut self, spec: &Spec, matter: &Matter) -> Result<(), SolverError> {
         for (index, object) in spec.objects.iter().enumerate() {

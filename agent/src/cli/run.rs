@@ -21,12 +21,14 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     let spec = setup::adjusted(setup::read(&arguments.spec)?, flags)?;
     let store = setup::store(flags)?;
     let mut engine = setup::engine(flags, store.clone());
+    engine.open_ahead();
     engine.facts(&spec, Path::new(""), &flags.run_options())?;
     let mut session = Session::start(&store, flags.session.as_deref(), spec.clone())?;
     session.commit(&format!("run {}", arguments.spec.display()), &[], &spec)?;
     let out = setup::default_out(flags, session.name());
     let name = session.name().to_owned();
     let mut conversation = Conversation::new(engine, session, flags.run_options(), Some(out.clone()), flags.cpu);
+    conversation.details = flags.verbose;
     let stop = Stop::default();
     let _guard = signals::stop_on_signal(&stop);
     if flags.json {

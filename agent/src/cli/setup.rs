@@ -83,6 +83,7 @@ pub fn converse(scene: Option<&str>, flags: &Flags, out: impl Fn(&str) -> Option
     let store = store(flags)?;
     let known = flags.session.as_ref().is_some_and(|name| Session::exists(&store, name).is_ok_and(|known| known));
     let mut engine = engine(flags, store.clone());
+    engine.open_ahead();
     let session = match scene {
         _ if flags.resume || known => resumed(scene, flags, &store)?,
         Some(scene) => {
@@ -93,7 +94,9 @@ pub fn converse(scene: Option<&str>, flags: &Flags, out: impl Fn(&str) -> Option
         None => return Err(Failure::new(Kind::Usage, "no scene: give a splat file (.ply or .splat), a spec (.toml), or --continue")),
     };
     let out = out(session.name());
-    Ok(Conversation::new(engine, session, flags.run_options(), out, flags.cpu))
+    let mut conversation = Conversation::new(engine, session, flags.run_options(), out, flags.cpu);
+    conversation.details = flags.verbose;
+    Ok(conversation)
 }
 
 /// An old session, which must be about the scene that was named, if one was.

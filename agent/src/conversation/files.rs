@@ -88,9 +88,12 @@ impl Files {
     pub fn finish(mut self) -> Result<Vec<Written>, ExportError> {
         drop(self.to_disk.take());
         join(self.disk.take())?;
+        tracing::debug!("frames on disk");
         let last: Vec<Written> = self.written.try_iter().collect();
         sheet(&self.folder, self.fps)?;
+        tracing::debug!("contact sheet on disk");
         join(self.film.take())?;
+        tracing::debug!("preview on disk");
         Ok(last)
     }
 }
@@ -130,22 +133,13 @@ fn sheet(folder: &Path, fps: u32) -> Result<(), ExportError> {
     let wanted: Vec<u32> = (0..total).filter(|&i| sheet.wants(i)).collect();
     let read = |index: u32| {
         let raster = read_png(&frame_path(&frames, index))?;
-        Ok(Frame {
-            index,
-            time_s: f64::from(index) / f64::from(fps.max(1)),
-            size: raster.size,
-            rgba8: raster.rgba8.into(),
-            png: Vec::new().into(),
-            depth: None,
-            id: None,
-        })
+        let (time_s, rgba8) = (f64::from(index) / f64::from(fps.max(1)), raster.rgba8.into());
+        Ok(ContactSheet::tile(&Frame { index, time_s, size: raster.size, rgba8, png: Vec::new().into(), depth: None, id: None }))
     };
-    let pictures: Vec<Result<Frame, ExportError>> = std::thread::scope(|scope| {
+    let tiles: Vec<Result<_, ExportError>> = std::thread::scope(|scope| {
         let readers: Vec<_> = wanted.iter().map(|&index| scope.spawn(move || read(index))).collect();
         readers.into_iter().filter_map(|r| r.join().ok()).collect()
     });
-    for picture in pictures {
-        sheet.add(&picture?);
-    }
+    sheet.extend(tiles.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten());
     sheet.finish(&folder.join("contact.png"))
 }

@@ -53,6 +53,30 @@ pub fn scene(facts: &Facts) -> Vec<String> {
     facts.objects.iter().map(sentence).collect()
 }
 
+/// Where the time of a run went within its stages, and what memory it took, for whoever wants to know more.
+pub fn details(metrics: &Metrics) -> Vec<String> {
+    let parts = metrics.seconds.iter().filter_map(|(name, s)| Some((name.split_once('.')?, *s)));
+    let mut lines: Vec<(&str, String)> = Vec::new();
+    for ((stage, part), seconds) in parts {
+        let said = format!("{part} {}", duration(seconds));
+        match lines.last_mut() {
+            Some((last, line)) if *last == stage => *line += &format!(", {said}"),
+            _ => lines.push((stage, format!("{stage}: {said}"))),
+        }
+    }
+    let megabytes = |bytes: u64| bytes.div_ceil(1_000_000);
+    let (memory, solver) = (&metrics.memory, &metrics.solver);
+    let mut said: Vec<String> = lines.into_iter().map(|(_, line)| line).collect();
+    said.push(format!("solver: {} particles, {} substeps, {} taken back", solver.particles, solver.substeps, solver.retries));
+    said.push(format!(
+        "memory: {} MB on the device of {} set aside there, at most {} of main memory",
+        megabytes(memory.device_bytes),
+        megabytes(memory.device_reserved_bytes),
+        megabytes(memory.host_peak_bytes)
+    ));
+    said
+}
+
 /// What the objects did, one sentence each.
 pub fn outcome(metrics: &Metrics) -> Vec<String> {
     metrics.objects.iter().map(|(name, object)| sentence(name, object, metrics)).collect()

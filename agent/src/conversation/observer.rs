@@ -64,6 +64,7 @@ impl Sink for Observer<'_> {
             let Progress { stage, done, total, seconds_left } = progress;
             self.listener.event(Event::StageProgress { stage: stage.to_owned(), done, total, seconds_left });
         }
+        self.report_written();
     }
 
     fn frame(&mut self, frame: Frame) {

@@ -10,6 +10,7 @@ use phystalk::Stop;
 use phystalk::gpu::Tier;
 use phystalk::spec::{Camera, Edit, Spec};
 use phystalk::stages::{Engine, Metrics, Plan, Report, RunOptions};
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -24,6 +25,8 @@ pub struct Conversation {
     asked_for_cpu: bool,
     said_device: bool,
     warned: BTreeSet<String>,
+    /// Whether runs tell where their time and memory went.
+    pub details: bool,
 }
 
 /// How a turn ended.
@@ -39,7 +42,7 @@ impl Conversation {
     /// Goes on with a session.
     pub fn new(engine: Engine, session: Session, options: RunOptions, out: Option<PathBuf>, asked_for_cpu: bool) -> Conversation {
         let options = RunOptions { camera: session.camera(), ..options };
-        Conversation { engine, session, options, out, turns: 0, asked_for_cpu, said_device: false, warned: BTreeSet::new() }
+        Conversation { engine, session, options, out, turns: 0, asked_for_cpu, said_device: false, warned: BTreeSet::new(), details: false }
     }
 
     /// Its session.
@@ -172,8 +175,10 @@ impl Conversation {
     fn understand_and_run(&mut self, words: &str, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
         let spec = self.session.spec().clone();
         let facts = self.engine.facts(&spec, Path::new(""), &self.options)?;
-        let resolved = self.engine.automatic(&spec, Path::new(""), &self.options)?;
         let previous = self.before_head();
+        let engine = RefCell::new(&mut self.engine);
+        // What could not be found out here, the run will explain.
+        let resolved = |path: &str| engine.borrow_mut().automatic(&spec, Path::new(""), &self.options, path).ok().flatten();
         let context = language::Context { spec: &spec, facts: &facts, resolved: &resolved, previous_spec: previous.as_ref() };
         let reply = language::understand(words, &context);
         listener.event(Event::Usage { provider: "phrasebook".to_owned(), input_tokens: 0, output_tokens: 0 });
@@ -296,7 +301,8 @@ impl Conversation {
         }
         // Kept of a version that ran to its end: that is how the others are told.
         self.session.keep_resolved(&version.name, serde_json::Value::Object(report.metrics.resolved.clone()))?;
-        narrate::outcome(&report.metrics).into_iter().for_each(|text| listener.event(Event::Message { text }));
+        let details = if self.details { narrate::details(&report.metrics) } else { Vec::new() };
+        narrate::outcome(&report.metrics).into_iter().chain(details).for_each(|text| listener.event(Event::Message { text }));
         judge(&report.metrics, &version.name)
     }
 

@@ -171,7 +171,7 @@ impl<'a> Draft<'a> {
 
     /// A resolved number of the version that is talked about.
     pub fn resolved(&self, path: &str) -> Option<f64> {
-        self.context.resolved.get(path).and_then(serde_json::Value::as_f64)
+        (self.context.resolved)(path)
     }
 
     /// Height of an object's lowest point over what is below it at t = 0. Of a turned object the corners of its box

@@ -74,8 +74,8 @@ pub struct Context<'a> {
     pub spec: &'a Spec,
     /// The scene in numbers.
     pub facts: &'a Facts,
-    /// What `"auto"` comes to in the present spec, by path.
-    pub resolved: &'a serde_json::Map<String, serde_json::Value>,
+    /// What `"auto"` comes to at a path of the present spec; it may take a while to find out.
+    pub resolved: &'a dyn Fn(&str) -> Option<f64>,
     /// The spec that the newest turn's edits were made on: "no, the other way", "again", "undo that and …".
     pub previous_spec: Option<&'a Spec>,
 }

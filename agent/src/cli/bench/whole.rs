@@ -76,12 +76,18 @@ fn options(flags: &Flags) -> RunOptions {
 struct Clock {
     start: Instant,
     frames_s: Vec<f64>,
+    /// And when a frame was simulated and handed on.
+    simulated_s: Vec<f64>,
     /// Stops the run after the first picture.
     first_only: Option<Stop>,
 }
 
 impl Sink for Clock {
-    fn progress(&mut self, _: Progress) {}
+    fn progress(&mut self, progress: Progress) {
+        if progress.stage == "simulate" {
+            self.simulated_s.push(self.start.elapsed().as_secs_f64());
+        }
+    }
     fn frame(&mut self, _: Frame) {
         self.frames_s.push(self.start.elapsed().as_secs_f64());
         if let Some(stop) = &self.first_only {
@@ -91,11 +97,11 @@ impl Sink for Clock {
     fn warning(&mut self, _: &str) {}
 }
 
-fn clocked(engine: &mut Engine, spec: &Spec, options: &RunOptions, first_only: bool) -> Result<Vec<f64>, Failure> {
+fn clocked(engine: &mut Engine, spec: &Spec, options: &RunOptions, first_only: bool) -> Result<Clock, Failure> {
     let stop = Stop::default();
-    let mut clock = Clock { start: Instant::now(), frames_s: Vec::new(), first_only: first_only.then(|| stop.clone()) };
+    let mut clock = Clock { start: Instant::now(), frames_s: Vec::new(), simulated_s: Vec::new(), first_only: first_only.then(|| stop.clone()) };
     engine.run(spec, Path::new(""), options, None, &mut clock, &stop)?;
-    Ok(clock.frames_s)
+    Ok(clock)
 }
 
 fn moving(scene: &str, flags: &Flags, edits: &[Edit]) -> Result<Spec, Failure> {
@@ -105,13 +111,14 @@ fn moving(scene: &str, flags: &Flags, edits: &[Edit]) -> Result<Spec, Failure> {
     Ok(spec.apply(&all)?)
 }
 
-/// From one picture to the next while a scene jumps at 60 frames a second: simulate, skin, render.
+/// From one frame to the next while a scene jumps at 60 frames a second: simulate, skin, render, and the motion and the
+/// picture on their way back. Pictures are encoded beside it, and come out in bursts.
 fn frame(flags: &Flags, scene: &str) -> Result<Timing, Failure> {
     let scratch = Scratch::new("frame")?;
-    let spec = moving(scene, flags, &[Edit::set("time.fps", 60), Edit::set("time.duration_s", 0.5)])?;
-    let times = clocked(&mut scratch.engine(flags)?, &spec, &options(flags), false)?;
-    // The first frames wait for pipelines, the last for the encoders.
-    let steady = &times[times.len().min(4)..];
+    let spec = moving(scene, flags, &[Edit::set("time.fps", 60), Edit::set("time.duration_s", 1.0)])?;
+    let clock = clocked(&mut scratch.engine(flags)?, &spec, &options(flags), false)?;
+    // The first frames wait for pipelines.
+    let steady = &clock.simulated_s[clock.simulated_s.len().min(4)..];
     let seconds: Vec<f64> = steady.windows(2).map(|w| w[1] - w[0]).collect();
     if seconds.is_empty() { Err(Failure::other("the scene made too few frames to time")) } else { Ok(Timing::of(seconds)) }
 }
@@ -206,7 +213,7 @@ fn edit(flags: &Flags, scene: &str) -> Result<Timing, Failure> {
         let start = Instant::now();
         let edited = spec.apply(&[Edit::set(format!("object.{name}.velocity_m_s"), vec![0.0, 0.0, 2.1 + 0.1 * turn as f64])])?;
         let prepared_s = start.elapsed().as_secs_f64();
-        let first = clocked(&mut engine, &edited, &options, true)?.first().copied();
+        let first = clocked(&mut engine, &edited, &options, true)?.frames_s.first().copied();
         seconds.push(prepared_s + first.ok_or_else(|| Failure::other("no frame came"))?);
     }
     Ok(Timing::of(seconds))

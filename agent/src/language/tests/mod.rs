@@ -56,7 +56,8 @@ impl Stage {
     }
 
     pub fn ask(&self, text: &str) -> Reply {
-        understand(text, &Context { spec: &self.spec, facts: &self.facts, resolved: &self.resolved, previous_spec: self.previous.as_ref() })
+        let resolved = |path: &str| self.resolved.get(path).and_then(serde_json::Value::as_f64);
+        understand(text, &Context { spec: &self.spec, facts: &self.facts, resolved: &resolved, previous_spec: self.previous.as_ref() })
     }
 
     /// The stage after a turn that must make edits.
