@@ -1,5 +1,5 @@
-// Where Gaussians lie, in a table of cells: of each the area that its Gaussians were made to cover, and that
-// area's first and second moments about the cell's middle. Integers, so that no sum depends on an order; found
+// Where Gaussians lie, in a table of cells: of each the area that its Gaussians were made to cover, that
+// area's first and second moments about the cell's middle, and how many they are. Integers, so that no sum depends on an order; found
 // by a hash of the cell, which but for one in billions is its own.
 
 struct Immediates {
@@ -10,8 +10,8 @@ struct Immediates {
 }
 var<immediate> params: Immediates;
 
-// Words of a cell: area, three first and six second moments.
-const CELL_WORDS: u32 = 10u;
+// Words of a cell: area, three first and six second moments, number.
+const CELL_WORDS: u32 = 11u;
 
 fn reach_m() -> f32 {
     return COVER_REACH * params.span_m;

@@ -3,6 +3,8 @@
 struct Around {
     // In squares of the span.
     area: f32,
+    // And of each Gaussian, on average.
+    each: f32,
     // Mean of d d^T over it about its own middle, in squares of the reach.
     spread: mat3x3<f32>,
 }
@@ -27,6 +29,7 @@ fn place_of(key: u32) -> u32 {
 fn around(x: vec3<f32>) -> Around {
     let home = vec3<i32>(floor(x));
     var area = 0.0;
+    var number = 0.0;
     var first = vec3(0.0);
     var square = vec3(0.0);
     var mixed = vec3(0.0);
@@ -43,6 +46,7 @@ fn around(x: vec3<f32>) -> Around {
         let middle = away + s / own;
         let w = nearness(dot(middle, middle));
         area += w * own;
+        number += w * f32(sums[at + 10u]);
         first += w * (s + own * away);
         square += w * (vec3(f32(sums[at + 4u]), f32(sums[at + 5u]), f32(sums[at + 6u])) + away * (2.0 * s + own * away));
         mixed += w * (vec3(f32(sums[at + 7u]), f32(sums[at + 8u]), f32(sums[at + 9u]))
@@ -52,5 +56,5 @@ fn around(x: vec3<f32>) -> Around {
     let mean = first * per;
     let d = square * per - mean * mean;
     let o = mixed * per - mean.yzx * mean.zxy;
-    return Around(area / COVER_UNITS, mat3x3(d.x, o.z, o.y, o.z, d.y, o.x, o.y, o.x, d.z));
+    return Around(area / COVER_UNITS, area / (COVER_UNITS * max(number, 1e-6)), mat3x3(d.x, o.z, o.y, o.z, d.y, o.x, o.y, o.x, d.z));
 }

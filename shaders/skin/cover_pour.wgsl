@@ -53,4 +53,5 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     atomicAdd(&sums[at + 7u], i32(mixed.x));
     atomicAdd(&sums[at + 8u], i32(mixed.y));
     atomicAdd(&sums[at + 9u], i32(mixed.z));
+    atomicAdd(&sums[at + 10u], 1);
 }

@@ -1,6 +1,7 @@
 // One thread a moving Gaussian that has lost its shape: what is loose takes its shape from what lies around it.
 // Where that has spread it grows, so that what was covered stays covered; where it is piled up it shrinks. It is
-// round in the plane of a sheet, thin across it as its volume asks, round all over in a heap or alone.
+// round in the plane of a sheet, thin across it as its volume asks, round all over in a heap or alone. What lies
+// together is of one size: each covers an equal share.
 
 @group(0) @binding(0) var<storage, read> moving: array<u32>;
 @group(0) @binding(1) var<storage, read> loose: array<f32>;
@@ -24,7 +25,8 @@ fn spaced(size: vec4<f32>, x: vec3<f32>) -> mat3x3<f32> {
     let n = axes.least;
     let across = mat3x3(n * n.x, n * n.y, n * n.z);
     let unit = mat3x3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-    let radius_m = grown * size.x;
+    let even_m = mix(size.x, params.span_m * sqrt(here.each), together);
+    let radius_m = grown * even_m;
     return (unit - across * (1.0 - thin * thin)) * (radius_m * radius_m);
 }
 

@@ -1,5 +1,5 @@
 //! The shape of Gaussians that have lost theirs: in liquids and grains it follows how densely the Gaussians
-//! lie, so that a sheet stays whole, a heap is no fog and a drop is round.
+//! lie, so that a sheet stays whole and even, a heap is no fog and a drop is round.
 
 #[cfg(test)]
 mod tests;
@@ -47,7 +47,7 @@ impl Cover {
     pub fn new(gpu: &Gpu, splats: &Splats, moving: &wgpu::Buffer, loose: &wgpu::Buffer, immediates: &Immediates) -> Result<Cover, GpuError> {
         let places = (2 * immediates.count as usize).next_power_of_two().max(64);
         let keys = gpu.storage::<u32>("skin.keys", places)?;
-        let sums = gpu.storage::<[i32; 10]>("skin.sums", places)?;
+        let sums = gpu.storage::<[i32; 11]>("skin.sums", places)?;
         let sizes = gpu.storage::<[f32; 4]>("skin.sizes", immediates.count.max(1) as usize)?;
         let all = gpu.storage::<f32>("skin.all", immediates.count.max(1) as usize)?;
         let [size, pour, count, shape] = sources().map(|source| gpu.kernel(&source));

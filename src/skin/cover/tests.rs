@@ -56,3 +56,23 @@ fn a_heap_is_no_fog_and_a_drop_is_round() {
     let (axes, _) = middle_of(&rest, |x| x * 3.0);
     assert!(axes[0] <= MOST && axes[2] > 0.7 * axes[0], "{axes:?}");
 }
+
+#[test]
+fn large_and_small_that_lie_together_are_of_one_size() {
+    let places = lattice([31, 31, 1], 0.004);
+    let records: Vec<_> =
+        places.iter().enumerate().map(|(i, &x)| if i % 3 == 0 { disc(x, Vec3::Y) } else { scaled(disc(x, Vec3::X), 0.3) }).collect();
+    let shapes = Cover::new(&records, Vec3::ZERO, SPAN_M).spaced(&places, &vec![1.0; places.len()]);
+    let inner = |i: &usize| places[*i].x > 0.05 && places[*i].x < 0.08 && places[*i].y > 0.05 && places[*i].y < 0.08;
+    let area = |i: usize| f64::from(principal(shapes[i]).0[0]);
+    let areas: Vec<f64> = (0..places.len()).filter(inner).map(area).collect();
+    let (least, most) = areas.iter().fold((f64::MAX, 0.0f64), |(l, m), a| (l.min(*a), m.max(*a)));
+    let mean = (1.0 + 2.0 * 0.09) / 3.0 * f64::from(RADIUS_M * RADIUS_M);
+    assert!(most < 1.6 * least && least > 0.7 * mean && most < 1.4 * mean, "{least} to {most} of {mean}");
+}
+
+/// A record whose axes are shorter or longer.
+fn scaled(mut record: [f32; 16], by: f32) -> [f32; 16] {
+    record[4..10].iter_mut().for_each(|c| *c *= by * by);
+    record
+}

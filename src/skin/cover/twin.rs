@@ -13,7 +13,7 @@ pub struct Cover {
     pub sizes: Vec<[f64; 3]>,
 }
 
-type Table = BTreeMap<[i32; 3], [i64; 10]>;
+type Table = BTreeMap<[i32; 3], [i64; 11]>;
 
 impl Cover {
     /// From the records of the captured pose.
@@ -41,14 +41,15 @@ impl Cover {
             let words = [1.0, d.x, d.y, d.z, d.x * d.x, d.y * d.y, d.z * d.z, d.y * d.z, d.z * d.x, d.x * d.y];
             let cell = table.entry(x.floor().as_ivec3().to_array()).or_default();
             cell.iter_mut().zip(words).for_each(|(sum, word)| *sum += (area * word).round() as i64);
+            cell[10] += 1;
         }
         table
     }
 
-    /// `cover_around.wgsl`: the area around a place, squares of the span, and its spread.
-    fn around(&self, table: &Table, x: Vec3) -> (f64, DMat3) {
+    /// `cover_around.wgsl`: the area around a place and of each Gaussian there, squares of the span, and its spread.
+    fn around(&self, table: &Table, x: Vec3) -> (f64, f64, DMat3) {
         let x = self.in_cells(x);
-        let (mut area, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
+        let (mut area, mut number, mut first, mut second) = (0.0, 0.0, DVec3::ZERO, DMat3::ZERO);
         for k in 0..27 {
             let cell = x.floor().as_ivec3() + IVec3::new(k % 3, k / 3 % 3, k / 9) - 1;
             let Some(sums) = table.get(&cell.to_array()) else { continue };
@@ -58,18 +59,19 @@ impl Cover {
             let w = (1.0 - (from + middle).length_squared()).max(0.0).powi(3);
             let about = DMat3::from_cols_array(&[s[4], s[9], s[8], s[9], s[5], s[7], s[8], s[7], s[6]]);
             area += w * s[0];
+            number += w * s[10];
             first += (middle + from) * (s[0] * w);
             second += (about + outer(from, middle * s[0]) + outer(middle * s[0], from) + outer(from, from) * s[0]) * w;
         }
         let per = 1.0 / area.max(1.0);
-        (area / f64::from(UNITS), second * per - outer(first * per, first * per))
+        (area / f64::from(UNITS), area / (f64::from(UNITS) * number.max(1e-6)), second * per - outer(first * per, first * per))
     }
 
     /// `cover_shape.wgsl`: the covariance of each Gaussian, had it lost its shape wholly.
     pub fn spaced(&self, centres: &[Vec3], loose: &[f32]) -> Vec<Mat3> {
         let table = self.table(centres, loose);
         let one = |(x, &[radius_m, thin, rest]): (&Vec3, &[f64; 3])| {
-            let (area, spread) = self.around(&table, *x);
+            let (area, each, spread) = self.around(&table, *x);
             let area = area.max(1e-20);
             let together = 1.0 - f64::from(smoothstep(ALONE, ((radius_m / f64::from(self.span_m)).powi(2) / area) as f32));
             let grown = 1.0 + together * ((rest / area).sqrt().clamp(f64::from(LEAST), f64::from(MOST)) - 1.0);
@@ -77,8 +79,9 @@ impl Cover {
             let flat = (least.max(0.0) + SPREAD_LEAST) / (middle + SPREAD_LEAST);
             let thinnest = (thin / grown.powi(3)).clamp(f64::from(SHEET_LEAST), 1.0);
             let thin = 1.0 + together * (thinnest + (1.0 - thinnest) * f64::from(smoothstep(SHEET, flat)) - 1.0);
+            let even_m = radius_m + together * (f64::from(self.span_m) * each.sqrt() - radius_m);
             let n = normal.as_dvec3();
-            ((DMat3::IDENTITY - outer(n, n) * (1.0 - thin * thin)) * (grown * radius_m).powi(2)).as_mat3()
+            ((DMat3::IDENTITY - outer(n, n) * (1.0 - thin * thin)) * (grown * even_m).powi(2)).as_mat3()
         };
         centres.iter().zip(&self.sizes).map(one).collect()
     }
