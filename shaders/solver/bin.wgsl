@@ -8,7 +8,7 @@
 @group(0) @binding(3) var<storage, read_write> block_info: array<atomic<u32>>;
 @group(0) @binding(4) var<storage, read_write> control: Control;
 
-// Stencil and slack span at most two blocks along each axis.
+// Stencil and slack span two blocks along each axis, or three.
 fn reach(low: vec3<u32>, high: vec3<u32>, layer: u32) {
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {

@@ -115,29 +115,24 @@ fn drop_of_water(gpu: &Gpu, particles: usize) -> Result<Solver, SolverError> {
     Solver::new(gpu, settings, &body)
 }
 
-/// Times whole recordings of some substeps, some times over.
+/// Times whole recordings of some substeps, some times over. Each is planned from the present state, as a frame is.
 fn time_substeps(solver: &mut Solver, (substeps, recordings): (u32, u32), label: String) -> Result<BenchReport, SolverError> {
     let gpu = &solver.gpu.clone();
-    let plan = solver.bench_plan(substeps * (recordings + 2) + substeps)?;
-    let mut step = 0;
-    let mut record = |solver: &mut Solver, count: u32| -> Result<Recording, SolverError> {
-        let recording = solver.bench_recording(&plan, step..step + count)?;
-        step += count;
-        Ok(recording)
-    };
     // The first ones compile, and bring the clock up.
     for _ in 0..2 {
-        let warm = record(solver, substeps)?;
+        let plan = solver.bench_plan(substeps)?;
+        let warm = solver.bench_recording(&plan, substeps)?;
         gpu.submit(&warm);
     }
     let mut seconds = Vec::new();
     for _ in 0..recordings {
-        let recording = record(solver, substeps)?;
+        let plan = solver.bench_plan(substeps)?;
+        let recording = solver.bench_recording(&plan, substeps)?;
         seconds.push(gpu.time(&recording)? / f64::from(substeps));
     }
     seconds.sort_by(f64::total_cmp);
-    let last = record(solver, plan.sort_every)?;
-    let passes = gpu.profile(&last)?;
+    let plan = solver.bench_plan(substeps)?;
+    let passes = gpu.profile(&solver.bench_recording(&plan, plan.sort_every)?)?;
     Ok(BenchReport {
         label,
         particles: solver.particle_count() as usize,
@@ -168,21 +163,25 @@ fn cube(particles: usize) -> Particles {
 impl Solver {
     /// A plan of `substeps` equal substeps, as a run would take them, and a window that holds the fall.
     fn bench_plan(&mut self, substeps: u32) -> Result<Plan, SolverError> {
+        self.seen = None;
         let seen = self.look()?;
         let acceleration = self.set_surroundings();
         let end_s = self.time_s + self.settings.frame_s;
         let plan = Plan { substeps, ..self.plan(&seen, end_s, end_s, acceleration, 0) };
+        let fresh = self.grid.is_none();
         self.fit_window(seen.low, seen.high, 4 + (DROP_M / self.settings.cell_m) as i32)?;
-        // Nobody watches: what splashes finds room.
-        self.make_room(4 * self.grid.as_ref().map_or(0, |g| g.capacity))?;
+        if fresh {
+            // Nobody watches: what splashes finds room.
+            self.make_room(4 * self.grid.as_ref().map_or(0, |g| g.capacity))?;
+        }
         self.start_segment();
         Ok(plan)
     }
 
-    fn bench_recording(&mut self, plan: &Plan, steps: std::ops::Range<u32>) -> Result<Recording, SolverError> {
+    fn bench_recording(&mut self, plan: &Plan, substeps: u32) -> Result<Recording, SolverError> {
         let bound = self.bind_both()?;
         let mut recording = Recording::default();
-        for step in steps {
+        for step in 0..substeps {
             self.record_substep(plan, step, &bound, &mut recording);
         }
         Ok(recording)

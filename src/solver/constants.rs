@@ -49,6 +49,8 @@ pub const FIXED_BITS: u32 = 26;
 pub const FIXED_BITS_RETREAT: u32 = 2;
 /// Cells that a particle may travel between two sorts.
 pub const SLACK_CELLS: i32 = 1;
+/// Where workgroups go by block: within half of it particles stay in the tile.
+pub const BLOCK_SLACK_CELLS: i32 = 2;
 /// A node whose nearest particle is within this of its rest offset stands on its support, in cells. No
 /// more than the rounding of marks: what is a hair above it would fall by that hair.
 pub const TOUCHING_CELLS: f32 = 1e-4;

@@ -1,7 +1,7 @@
 //! The solver itself: its particles, its surroundings, and what may be done to them between frames.
 
 use super::budget;
-use super::constants::{FEW_PARTICLES, FIXED_BITS, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP};
+use super::constants::{BLOCK_SLACK_CELLS, FEW_PARTICLES, FIXED_BITS, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP};
 use super::encounter::{self, Encounter};
 use super::fields::Fields;
 use super::grid::{GridBuffers, Window, params_buffer};
@@ -16,7 +16,7 @@ use super::state::{self, ParticleState, StateBuffers};
 use super::transfer::Transfers;
 use super::types::{Particles, Placement, Settings, Softened, SolverError};
 use super::watch::{Control, Watch};
-use crate::gpu::{Gpu, Recording};
+use crate::gpu::{Gpu, Recording, Tier};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
 
@@ -131,7 +131,10 @@ impl Solver {
             momentum_bits: FIXED_BITS,
             reach_m: REACH_CELLS * settings.cell_m,
             has_ground: u32::from(settings.ground.is_some()),
-            slack: SLACK_CELLS,
+            slack: match gpu.tier {
+                Tier::Cpu => SLACK_CELLS,
+                Tier::Gpu => BLOCK_SLACK_CELLS,
+            },
             item_particles: if n < FEW_PARTICLES { TILE_LANES } else { 2 * TILE_LANES },
             rounder: 12_582_912.0,
             seed: (settings.seed ^ settings.seed >> 32) as u32,

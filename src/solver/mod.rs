@@ -25,6 +25,7 @@ mod laws;
 mod liquid;
 mod obstacles;
 mod prestress;
+mod record;
 mod rigid;
 mod sph;
 mod state;

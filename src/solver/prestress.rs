@@ -7,11 +7,12 @@
 //! what is left. Slender stems have modes a thousand times slower than the grid's fastest, which
 //! relaxation in time would have to wait for.
 
-use super::advance::{Bound, Substep};
+use super::advance::Substep;
 use super::constants::{FIXED_BITS, REST_CELLS, REST_CELLS_MAX, SLACK_CELLS};
 use super::core::Solver;
 use super::grid::GridBuffers;
 use super::obstacles::{self, distance_m};
+use super::record::Bound;
 use super::state::{ParticleState, RIGID_TAG};
 use super::types::{PrestressReport, SolverError};
 use super::watch::Control;

@@ -5,10 +5,11 @@
 //! leaves it for the grid is 512 nodes, not 27 a particle. Between two sorts one pass there ends a substep and sums for
 //! the next (Wang et al. 2020). Both forms write the same grid.
 
-use super::advance::{Bound, Substep};
+use super::advance::Substep;
 use super::core::Solver;
 use super::grid::GridBuffers;
 use super::passes::SUBSTEP;
+use super::record::Bound;
 use super::state::StateBuffers;
 use crate::gpu::{Gpu, Kernel, KernelSource, Recording, Tier};
 

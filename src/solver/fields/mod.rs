@@ -6,10 +6,11 @@ pub(super) mod write;
 
 pub use respond::velocity_change;
 
-use super::advance::{Bound, Substep};
+use super::advance::Substep;
 use super::constants;
 use super::core::Solver;
 use super::passes::SUBSTEP;
+use super::record::Bound;
 use super::state::StateBuffers;
 use super::types::{Advance, Field, Particles, Settings, SolverError};
 use crate::gpu::Access::{Read, Write};

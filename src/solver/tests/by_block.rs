@@ -3,7 +3,8 @@
 use super::twins::{SUBSTEP, follows_the_twins_on, gpu, node_count, run, scene_on, sort};
 use crate::Stop;
 use crate::gpu::{Gpu, Recording, Tier};
-use crate::solver::advance::{Bound, Substep};
+use crate::solver::advance::Substep;
+use crate::solver::record::Bound;
 use crate::solver::state::ParticleState;
 use crate::solver::substance::Substance;
 use crate::solver::twin;
