@@ -66,7 +66,7 @@ pub fn kernels() -> Vec<KernelSource> {
 
 /// Compiles the passes that every solver asks for.
 pub fn prepare(gpu: &Gpu) {
-    gpu.prepare(&passes::kernels());
+    gpu.prepare(&[passes::kernels(), transfer::usual(gpu)].concat());
 }
 
 /// Shader text of all passes, for the keys of stages.

@@ -73,6 +73,14 @@ pub(super) fn kernels() -> Vec<KernelSource> {
     [cell::kernels(), cell_laws::kernels(), tile::kernels(), tile_laws::kernels(), fused::kernels(), fused_laws::kernels()].concat()
 }
 
+/// Those that every solver on a device asks for.
+pub(super) fn usual(gpu: &Gpu) -> Vec<KernelSource> {
+    match gpu.tier {
+        Tier::Cpu => cell::kernels(),
+        Tier::Gpu => [tile::kernels(), fused::kernels()].concat(),
+    }
+}
+
 /// The transfers of one form.
 #[derive(Clone, Debug)]
 pub(super) struct Transfers {
