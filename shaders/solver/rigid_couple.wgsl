@@ -16,7 +16,7 @@ fn respond(node: u32, x: vec3<f32>) {
     if (meeting.rigid_kg == 0.0) {
         return;
     }
-    let b = meeting.body;
+    let b = meeting.body & (SLIDES - 1u);
     let v = meeting.momentum / meeting.soft_kg;
     let body_v = predicted[2u * b].xyz + cross(predicted[2u * b + 1u].xyz, x - bodies[b].centre.xyz);
     var after = body_v;
@@ -29,7 +29,7 @@ fn respond(node: u32, x: vec3<f32>) {
         }
         let sliding = u - meeting.normal * approach;
         let speed = length(sliding);
-        let grip = shapes[b].friction * (meeting.allowed_m_s - approach);
+        let grip = select(shapes[b].friction, 0.0, (meeting.body & SLIDES) != 0u) * (meeting.allowed_m_s - approach);
         let kept = select(0.0, 1.0 - grip / max(speed, 1e-20), speed > grip);
         after = body_v + meeting.normal * meeting.allowed_m_s + sliding * kept;
     }

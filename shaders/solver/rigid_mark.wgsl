@@ -1,5 +1,5 @@
 // Soft particles beside bodies mark the nodes that they reach: with the gap to a body of another object,
-// with the bond to one of their own.
+// with the bond to one of their own. What flows or falls apart hangs on nothing.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
@@ -37,11 +37,15 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (is_rigid(tag) || !on_grid(tag) || !in_window(first)) {
         return;
     }
+    let kind = substances[row_of(tag)].kind;
+    let loose = kind == LIQUID || kind == SAND || kind == SNOW;
+    // Without a shear modulus there is no Coulomb friction either.
+    let slides = select(0u, SLIDES, matter[id.x].w == 0.0);
     var contact = 0u;
     var bond = 0u;
     var normal = vec3<f32>(0.0);
     for (var b = 0u; b < arrayLength(&bodies); b++) {
-        let own = shapes[b].object == (tag & 0xffffu);
+        let own = !loose && shapes[b].object == (tag & 0xffffu);
         let d = x - bodies[b].centre.xyz;
         let reach_m = shapes[b].radius_m + 2.0 * params.cell_m;
         if (dot(d, d) > reach_m * reach_m) {
@@ -53,7 +57,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         let gap_m = level.distance_m - REST_CELLS * params.cell_m;
         if (!own && gap_m < params.reach_m) {
-            let value = pack_near(gap_m, b);
+            let value = pack_near(gap_m, b | slides);
             if (value > contact) {
                 contact = value;
                 normal = turned(bodies[b].turn, level.gradient * inverseSqrt(max(dot(level.gradient, level.gradient), 1e-12)));

@@ -24,8 +24,12 @@ struct Meeting {
     rigid_kg: f32,
     momentum: vec3<f32>,
     soft_kg: f32,
+    // And whether the node slides along it.
     body: u32,
 }
+
+// Beside a body's number: without friction.
+const SLIDES: u32 = 512u;
 
 // The nearer the larger, so that the nearest particle wins a maximum; overlaps are nearer still.
 fn pack_near(gap_m: f32, b: u32) -> u32 {

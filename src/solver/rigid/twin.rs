@@ -6,6 +6,7 @@ use super::body::{Assembly, Body, Contact, Manifold, Shape};
 use crate::solver::constants::*;
 use crate::solver::obstacles::ColliderRecord;
 use crate::solver::state::ParticleState;
+use crate::solver::substance::Substance;
 use glam::{IVec3, Mat3, Quat, Vec3, Vec4};
 
 const NOWHERE: f32 = 1e30;
@@ -14,6 +15,7 @@ const SLOTS: usize = RIGID_SLOTS as usize;
 /// Everything around the bodies.
 pub struct World<'a> {
     pub all: &'a Assembly,
+    pub substances: &'a [Substance],
     pub colliders: &'a [ColliderRecord],
     pub gravity_m_s2: Vec3,
     pub accelerations: &'a [Vec3],

@@ -36,7 +36,14 @@ fn contacts_impulses_and_places_are_those_of_the_twin() {
     let states = crate::solver::state::initial(&particles, &colliders, settings.cell_m).expect("states");
     let all = body::assemble(&states, &particles.substances, &colliders, settings.cell_m).expect("bodies").expect("some");
     let dt_s = 5e-4;
-    let world = World { all: &all, colliders: &colliders, gravity_m_s2: settings.gravity_m_s2, accelerations: &[Vec3::ZERO; 2], dt_s };
+    let world = World {
+        all: &all,
+        substances: &particles.substances,
+        colliders: &colliders,
+        gravity_m_s2: settings.gravity_m_s2,
+        accelerations: &[Vec3::ZERO; 2],
+        dt_s,
+    };
     let substep = Substep { dt_s, dt_next_s: dt_s, index: 80, job: 0, since_s: 0.0, lag: 0 };
     let bound = solver.bind_both().expect("bound");
     let bound = bound[solver.current].rigid.as_ref().expect("rigid passes");
@@ -125,7 +132,7 @@ fn the_exchange_with_soft_matter_is_that_of_the_twin() {
     let none = [Vec3::ZERO; 2];
     let around = Surroundings { params: solver.params, colliders: &colliders, pins: &[], accelerations: &none, substances: &substances };
     let all = body::assemble(&states, &particles.substances, &colliders, settings.cell_m).expect("bodies").expect("some");
-    let world = World { all: &all, colliders: &colliders, gravity_m_s2: Vec3::ZERO, accelerations: &none, dt_s };
+    let world = World { all: &all, substances: &particles.substances, colliders: &colliders, gravity_m_s2: Vec3::ZERO, accelerations: &none, dt_s };
     solver_twin::stress(&mut states, &around, dt_s);
     let mut grid = solver_twin::p2g(&states, &around);
     let want = world.exchange(&bodies, &states, &mut grid, &solver.params);

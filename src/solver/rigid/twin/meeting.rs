@@ -5,6 +5,7 @@ use crate::solver::constants::{REST_CELLS, RIGID_LANES};
 use crate::solver::core::Params;
 use crate::solver::rigid::body::Body;
 use crate::solver::state::ParticleState;
+use crate::solver::substance::Substance;
 use crate::solver::twin::{self, Grid};
 use glam::{DMat3, DVec3, Vec3};
 use std::collections::BTreeMap;
@@ -13,8 +14,8 @@ use std::collections::BTreeMap;
 #[derive(Clone, Copy, Debug, Default)]
 struct Near {
     rigid_kg: f64,
-    /// Gap and body of the nearest soft particle.
-    contact: Option<(f32, usize)>,
+    /// Gap and body of the nearest soft particle, and whether it slides.
+    contact: Option<(f32, usize, bool)>,
     bond: Option<usize>,
 }
 
@@ -24,6 +25,7 @@ pub struct Meeting {
     pub body: usize,
     /// Zero where it is bonded.
     pub normal: Vec3,
+    slides: bool,
     allowed_m_s: f32,
     rigid_kg: f64,
     impulse: DVec3,
@@ -78,6 +80,7 @@ impl World<'_> {
 
     fn mark(&self, bodies: &[Body], s: &ParticleState, nears: &mut Nodes, params: &Params) {
         let (mut contact, mut bond): (Option<(f32, usize, Vec3)>, Option<usize>) = (None, None);
+        let loose = matches!(self.substances[s.substance()], Substance::Liquid { .. } | Substance::Sand { .. } | Substance::Snow { .. });
         for (b, (body, shape)) in bodies.iter().zip(&self.all.shapes).enumerate() {
             let d = s.position_m - xyz(&body.centre_m);
             if d.length() > shape.radius_m + 2.0 * params.cell_m {
@@ -85,7 +88,7 @@ impl World<'_> {
             }
             let level = self.all.fields[b].at(turn(body).inverse() * d);
             let gap_m = level.distance_m - REST_CELLS * params.cell_m;
-            if shape.object == s.object() {
+            if shape.object == s.object() && !loose {
                 bond = if level.distance_m < 2.0 * params.cell_m { Some(b) } else { bond };
             } else if gap_m < params.reach_m && contact.is_none_or(|c| gap_m < c.0) {
                 contact = Some((gap_m, b, turn(body) * level.gradient.normalize()));
@@ -94,7 +97,7 @@ impl World<'_> {
         for (node, _, d) in twin::stencil(s.position_m, params) {
             let near = nears.entry(node).or_default();
             if let Some((gap_m, b, _)) = contact.filter(|c| c.2.dot(d) <= 0.5 && near.contact.is_none_or(|n| c.0 < n.0)) {
-                near.contact = Some((gap_m, b));
+                near.contact = Some((gap_m, b, s.mu_pa == 0.0));
             }
             near.bond = near.bond.max(bond);
         }
@@ -105,10 +108,11 @@ impl World<'_> {
         let mut meetings = BTreeMap::new();
         for (node, near) in nears.iter().filter(|(_, n)| n.rigid_kg > 0.0) {
             let Some(soft) = grid.get(node) else { continue };
-            let meeting = |body, normal, allowed_m_s| Meeting { body, normal, allowed_m_s, rigid_kg: near.rigid_kg, impulse: DVec3::ZERO };
+            let meeting =
+                |body, normal, allowed_m_s, slides| Meeting { body, normal, slides, allowed_m_s, rigid_kg: near.rigid_kg, impulse: DVec3::ZERO };
             if let Some(b) = near.bond.filter(|_| near.rigid_kg >= 0.25 * soft.mass) {
-                meetings.insert(*node, meeting(b, Vec3::ZERO, 0.0));
-            } else if let Some((gap_m, b)) = near.contact {
+                meetings.insert(*node, meeting(b, Vec3::ZERO, 0.0, false));
+            } else if let Some((gap_m, b, slides)) = near.contact {
                 let gap_m = gap_m.max(-params.reach_m);
                 let x = place_of(node, params);
                 let body = &bodies[b];
@@ -118,7 +122,7 @@ impl World<'_> {
                 let arm = x - xyz(&body.centre_m);
                 let own = xyz(&body.velocity_m_s) + spin_of(&self.all.shapes[b], turn(body), xyz(&body.angular_momentum)).cross(arm);
                 if ((soft.momentum / soft.mass).as_vec3() - own).dot(normal) < allowed {
-                    meetings.insert(*node, meeting(b, normal, allowed));
+                    meetings.insert(*node, meeting(b, normal, allowed, slides));
                 }
             }
         }
@@ -187,7 +191,8 @@ impl World<'_> {
                     return false;
                 }
                 let sliding = v - body_v - normal * approach;
-                let grip = f64::from(self.all.shapes[meeting.body].friction) * (allowed - approach);
+                let friction = if meeting.slides { 0.0 } else { f64::from(self.all.shapes[meeting.body].friction) };
+                let grip = friction * (allowed - approach);
                 after += normal * allowed + sliding * (1.0 - grip / sliding.length().max(1e-20)).max(0.0);
             }
             meeting.impulse = (v - after) * soft.mass;
