@@ -40,7 +40,7 @@ long_cases! {
     v19_sloshing: "V19 sloshing";
     v21_swinging_drop: "V21";
     cubes_float_as_archimedes_says: "V23";
-    cubes_float_on_particles_too: "V23 SPH";
+    a_cube_floats_on_particles_too: "V23 SPH";
     a_stack_of_ten_stands: "stack";
     what_was_captured_standing_stays_as_it_stands: "left alone";
     what_is_dropped_bends_and_comes_back: "dropped";

@@ -147,7 +147,7 @@ pub const CASES: &[Case] = &[
     Case { name: "V19 SPH", quick: true, run: sph::hydrostatic },
     Case { name: "V20 SPH", quick: true, run: sph::poiseuille },
     Case { name: "V23", quick: false, run: coupling::floating },
-    Case { name: "V23 SPH", quick: false, run: coupling::floating_on_particles },
+    Case { name: "V23 SPH", quick: false, run: sph::buoyancy },
     Case { name: "V26", quick: true, run: repeat::same_bits },
     Case { name: "drag", quick: true, run: driven::drag },
     Case { name: "spring", quick: true, run: driven::spring },

@@ -1,4 +1,4 @@
-//! Liquids of smoothed particles: V18 to V20.
+//! Liquids of smoothed particles: V18 to V20 and V23.
 
 use super::bodies::block;
 use super::{Check, Plot};
@@ -202,4 +202,49 @@ pub(super) fn poiseuille(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         measured: measured.clone(),
     };
     Ok(vec![mean.compare(flow(&expected), flow(&measured), 0.05), shape.compare(0.0, apart.sqrt() / top, 0.05).with_plot(plot)])
+}
+
+/// V23: how deep a cube of half the liquid's density floats.
+pub(super) fn buoyancy(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    const POOL: [u32; 3] = [14, 14, 12];
+    const CUBE: f32 = 6.0 * D_M;
+    let [x, y, _] = POOL.map(|c| c as f32 * D_M);
+    let low = Vec3::new(4.0, 4.0, 9.0) * D_M;
+    let cube = block(low, Vec3::splat(CUBE), D_M, 2e4, 0.3);
+    let pool = liquid(Vec3::ZERO, POOL, 1e-3, 0.0);
+    let beside = |p: &Vec3| !(p.cmpgt(low).all() && p.cmplt(low + CUBE).all());
+    let mut position_m: Vec<Vec3> = pool.position_m.into_iter().filter(beside).collect();
+    let liquids = position_m.len();
+    position_m.extend(&cube.position_m);
+    let n = position_m.len();
+    let of = |liquid: f32, solid: f32| (0..n).map(|i| if i < liquids { liquid } else { solid }).collect::<Vec<f32>>();
+    let particles = Particles {
+        position_m,
+        velocity_m_s: vec![Vec3::ZERO; n],
+        volume_m3: vec![D_M.powi(3); n],
+        density_kg_m3: of(1000.0, 500.0),
+        young_pa: of(1.0, 2e4),
+        poisson: of(0.0, 0.3),
+        substance: (0..n).map(|i| u16::from(i >= liquids)).collect(),
+        object: (0..n).map(|i| u32::from(i >= liquids)).collect(),
+        substances: vec![pool.substances[0].clone(), Substance::default()],
+    };
+    let mut settings = Settings::new(2.0 * D_M);
+    slippery_ground(&mut settings);
+    settings.colliders = [between(0.0, x, Vec3::X, 0.0), between(0.0, y, Vec3::Y, 0.0)].concat();
+    let mut solver = Solver::new(gpu, settings, &particles)?;
+    let (mut under, samples) = (0.0, 20);
+    for k in 1..=40 {
+        solver.advance(0.03 * f64::from(k), &Stop::default())?;
+        let states = solver.states()?;
+        let middle = states[liquids..].iter().map(|s| s.position_m.z).sum::<f32>() / (n - liquids) as f32;
+        let bottom = middle - 0.5 * CUBE;
+        // Where the surface stands: the mean height of a flat pool that the cube reaches into.
+        let mean = states[..liquids].iter().map(|s| s.position_m.z).sum::<f32>() / liquids as f32;
+        let narrow = CUBE * CUBE / (x * y - CUBE * CUBE);
+        let level = mean + (mean * mean + narrow * bottom * (2.0 * mean - bottom)).sqrt();
+        under += if k > 40 - samples { f64::from((level - bottom) / CUBE) / f64::from(samples) } else { 0.0 };
+    }
+    let check = Check::new("V23 floating cube", "submerged share = density over the liquid's", "Archimedes", "");
+    Ok(vec![check.compare(0.5, under, 0.05)])
 }
