@@ -4,7 +4,7 @@
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> solve: Solve;
 @group(0) @binding(2) var<storage, read> place: array<vec4<f32>>;
-@group(0) @binding(3) var<storage, read> neighbours: array<u32>;
+@group(0) @binding(3) var<storage, read> neighbours: array<vec4<u32>>;
 @group(0) @binding(4) var<storage, read> near: array<u32>;
 @group(0) @binding(5) var<storage, read> density: array<vec4<f32>>;
 @group(0) @binding(6) var<storage, read> answer: array<f32>;
@@ -15,21 +15,25 @@
 @group(0) @binding(10) var<storage, read_write> reached: array<f32>;
 var<immediate> substep: Substep;
 
+// What a neighbour's velocity adds to it, without the common factor.
+fn rate(j: u32, at: vec3<f32>, liquid: bool) -> f32 {
+    let other = place[j];
+    let y = (at - other.xyz) * params.per_m;
+    let q = length(y);
+    return abs(other.w) * select(solid_steepness(q), steepness(q), liquid) * dot(corrected[j].xyz, y);
+}
+
 // Relative change of density in the substep.
 fn compression(i: u32, list: Near) -> f32 {
-    let mine = place[i];
+    let at = place[i].xyz;
     var sum = dot(corrected[i].xyz, density[i].xyz);
-    for (var k = 0u; k < list.liquids; k++) {
-        let j = neighbours[k * params.count + i];
-        let other = place[j];
-        let y = (mine.xyz - other.xyz) * params.per_m;
-        sum -= other.w * steepness(length(y)) * dot(corrected[j].xyz, y);
+    for (var k = 0u; k < list.liquids; k += 4u) {
+        let j = liquids_from(k, i);
+        sum -= (rate(j.x, at, true) + rate(j.y, at, true)) + (rate(j.z, at, true) + rate(j.w, at, true));
     }
-    for (var k = 1u; k <= list.solids; k++) {
-        let j = neighbours[(solve.columns - k) * params.count + i];
-        let other = place[j];
-        let y = (mine.xyz - other.xyz) * params.per_m;
-        sum += other.w * solid_steepness(length(y)) * dot(corrected[j].xyz, y);
+    for (var k = 0u; k < list.solids; k += 4u) {
+        let j = solids_from(k, i);
+        sum -= (rate(j.x, at, false) + rate(j.y, at, false)) + (rate(j.z, at, false) + rate(j.w, at, false));
     }
     return sum * params.per_m * substep.dt_s;
 }

@@ -1,5 +1,7 @@
-// Forces that do not depend on pressure: weight, what drives the object, surface tension, viscosity
-// where it is not stiff.
+// The velocities that the correction of density starts from: those free of divergence, and all that does
+// not depend on pressure: weight, what drives the object, surface tension, viscosity where it is not
+// stiff. That correction's first half round is made along with it, for its pressures are known; stiff viscosity
+// starts from there.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> solve: Solve;
@@ -7,30 +9,51 @@
 @group(0) @binding(3) var<storage, read> objects: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> colliders: array<Collider>;
 @group(0) @binding(5) var<storage, read> place: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> nature: array<vec2<f32>>;
-@group(0) @binding(7) var<storage, read> neighbours: array<u32>;
+@group(0) @binding(6) var<storage, read> nature: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read> neighbours: array<vec4<u32>>;
 @group(0) @binding(8) var<storage, read> near: array<u32>;
-@group(0) @binding(9) var<storage, read> surface: array<vec4<f32>>;
-@group(0) @binding(10) var<storage, read> motion: array<vec4<f32>>;
-@group(0) @binding(11) var<storage, read_write> predicted: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read> density: array<vec4<f32>>;
+@group(0) @binding(10) var<storage, read> pressure: array<f32>;
+@group(0) @binding(11) var<storage, read> motion: array<vec4<f32>>;
+@group(0) @binding(12) var<storage, read_write> predicted: array<vec4<f32>>;
+@group(0) @binding(13) var<storage, read_write> corrected: array<vec4<f32>>;
 var<immediate> substep: Substep;
 
-// Surface tension between a pair, over the particle's volume and a common factor.
-//
-// The energy of a surface is that of the gradient n of what is filled, E = sum of V k |n|^2 / 2, of which
-// this is the exact derivative: it smooths, and keeps momentum and spin. Alone it would spread; a pull
-// between particles beyond KEEP_APART and a push between nearer ones hold it together.
-fn tension(y: vec3<f32>, q: f32, mine: vec4<f32>, other: vec4<f32>, volume: f32, own_volume: f32) -> vec3<f32> {
+struct Own {
+    at: vec4<f32>,
+    nature: vec4<f32>,
+    v: vec3<f32>,
+    // 1 where viscosity is explicit.
+    viscous: f32,
+    liquid: bool,
+}
+
+// Sums over neighbours, each without its common factor.
+struct Pull {
+    force: vec3<f32>,
+    // What the pressures of either correction push.
+    density: vec3<f32>,
+    divergence: vec3<f32>,
+}
+
+fn meet(sums: ptr<function, Pull>, me: Own, j: u32, liquid: bool) {
+    let other = place[j];
+    let its = nature[j];
+    let y = (me.at.xyz - other.xyz) * params.per_m;
+    let q = length(y);
+    let volume = abs(other.w);
     let steep = steepness(q);
+    let alike = liquid && me.liquid;
     let along = y / max(q, 1e-6);
-    let pull = mine.w * mine.xyz - other.w * other.xyz;
-    let hessian = steep * pull + ((bend(q) - steep) * dot(pull, along)) * along;
-    let rest = 1.0 - q;
-    let held = COHESION * rest * rest * max(q - KEEP_APART, 0.0);
-    // As between two of the eight particles of a full cell; lighter ones at an edge weigh in with their share.
-    let share = 8.0 * min(volume / own_volume, 1.0);
-    let apart = (KEEP_APART_STRENGTH * max(1.0 - q / KEEP_APART, 0.0) - held) * 0.5 * (mine.w + other.w) * share;
-    return apart * along - (TENSION * volume) * hessian;
+    let approach = dot(me.v - motion[j].xyz, y);
+    let viscosity = me.viscous * couple_viscosity(me.nature.z, its.z) + eddies(approach / max(q, 1e-6)) * (2.0 / (me.nature.x + its.x));
+    let tension = couple_tension(me.nature.y, its.y, alike);
+    (*sums).force += (VISCOUS * viscosity * volume * steep * approach / (q * q + SOFT_DISTANCE)) * y - (tension * volume * pull(q)) * along;
+    if (liquid) {
+        let push = (other.w * select(solid_steepness(q), steep, me.liquid)) * y;
+        (*sums).density += pressure[j] * push;
+        (*sums).divergence += pressure[params.count + j] * push;
+    }
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -44,46 +67,45 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!list.liquid && list.liquids == 0u) {
         return;
     }
-    let mine = place[i];
-    let own = nature[i];
     let v = motion[i];
-    let shape = surface[i];
-    var tense = vec3<f32>(0.0);
-    var viscous = vec3<f32>(0.0);
-    var turbulent = vec3<f32>(0.0);
-    let count = list.liquids + list.solids;
-    for (var k = 0u; k < count; k++) {
-        let liquid = k < list.liquids;
-        let j = neighbours[select(solve.columns - 1u - (k - list.liquids), k, liquid) * n + i];
-        let other = place[j];
-        let y = (mine.xyz - other.xyz) * params.per_m;
-        let q = length(y);
-        let volume = abs(other.w);
-        tense += tension(y, q, shape, surface[j], volume, abs(mine.w));
-        let u = motion[j];
-        let approach = dot(v.xyz - u.xyz, y);
-        let factor = (volume * steepness(q) * approach / (q * q + SOFT_DISTANCE)) * y;
-        viscous += couple_viscosity(v.w, u.w) * factor;
-        let lightest = 2.0 / (own.x + nature[j].x);
-        turbulent += (eddies(approach / max(q, 1e-6)) * lightest) * factor;
+    let me = Own(place[i], nature[i], v.xyz, select(0.0, 1.0, substep.job == 0u), list.liquid);
+    let wall = density[n + i];
+    let gradient = density[i].xyz;
+    var sums = Pull(vec3<f32>(0.0), pressure[i] * gradient, pressure[n + i] * gradient);
+    for (var k = 0u; k < list.liquids; k += 4u) {
+        let j = liquids_from(k, i);
+        meet(&sums, me, j.x, true);
+        meet(&sums, me, j.y, true);
+        meet(&sums, me, j.z, true);
+        meet(&sums, me, j.w, true);
     }
+    for (var k = 0u; k < list.solids; k += 4u) {
+        let j = solids_from(k, i);
+        meet(&sums, me, j.x, false);
+        meet(&sums, me, j.y, false);
+        meet(&sums, me, j.z, false);
+        meet(&sums, me, j.w, false);
+    }
+    var force = sums.force;
     if (list.liquid) {
         for (var c = 0u; c < params.collider_count; c++) {
-            let t = touch(colliders[c], mine.xyz);
+            let t = touch(colliders[c], me.at.xyz);
             let s = t.distance_m * params.per_m;
             if (s >= 1.0) {
                 continue;
             }
-            let normal = surface_normal(colliders[c], t.face, mine.xyz);
-            tense += (TENSION * own.y * dot(shape.xyz, normal) * wall_bend(s)) * normal;
+            let normal = surface_normal(colliders[c], t.face, me.at.xyz);
+            force -= (me.nature.y * wall_pull(s)) * normal;
             // A wall without friction lets the liquid slip.
-            let drag = select(0.0, v.w * wall_drag(s), colliders[c].surface.x > 0.0);
-            viscous -= drag * (v.xyz - normal * dot(v.xyz, normal));
+            let drag = select(0.0, VISCOUS * me.viscous * me.nature.z * wall_drag(s), colliders[c].surface.x > 0.0);
+            force -= drag * (v.xyz - normal * dot(v.xyz, normal));
         }
     }
     let object = bitcast<u32>(matter[3u * n + i].y) & 0xffffu;
     let weight_m_s2 = params.gravity_m_s2 + objects[object].xyz;
-    let per_area = params.per_m * params.per_m * own.x;
-    let viscous_now = select(vec3<f32>(0.0), viscous, substep.job == 0u);
-    predicted[i] = vec4<f32>(v.xyz + substep.dt_s * (weight_m_s2 + per_area * (tense + VISCOUS * (viscous_now + turbulent))), v.w);
+    let accelerated = substep.dt_s * (weight_m_s2 + (params.per_m * params.per_m * me.nature.x) * force);
+    let factor = -substep.dt_s * params.per_m * me.nature.x;
+    let free = v.xyz + factor * along_walls(sums.divergence, wall) + accelerated;
+    predicted[i] = vec4<f32>(free, v.w);
+    corrected[i] = vec4<f32>(free + factor * along_walls(sums.density, wall), v.w);
 }

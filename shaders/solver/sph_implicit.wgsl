@@ -6,8 +6,8 @@
 @group(0) @binding(1) var<storage, read> solve: Solve;
 @group(0) @binding(2) var<storage, read> colliders: array<Collider>;
 @group(0) @binding(3) var<storage, read> place: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read> nature: array<vec2<f32>>;
-@group(0) @binding(5) var<storage, read> neighbours: array<u32>;
+@group(0) @binding(4) var<storage, read> nature: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read> neighbours: array<vec4<u32>>;
 @group(0) @binding(6) var<storage, read> near: array<u32>;
 // v*; the present iterate; the one before, which becomes the next.
 @group(0) @binding(7) var<storage, read> wanted: array<vec4<f32>>;
@@ -16,19 +16,27 @@
 @group(0) @binding(10) var<storage, read_write> errors: array<atomic<u32>>;
 var<immediate> substep: Substep;
 
+// Of one neighbour, without the common factor.
+fn brake(j: u32, at: vec3<f32>, v: vec4<f32>) -> vec3<f32> {
+    let other = place[j];
+    let y = (at - other.xyz) * params.per_m;
+    let q = length(y);
+    let u = present[j];
+    let coupling = couple_viscosity(v.w, u.w) * abs(other.w) * steepness(q) / (q * q + SOFT_DISTANCE);
+    return (coupling * dot(v.xyz - u.xyz, y)) * y;
+}
+
 // Minus the viscous acceleration, times the substep.
 fn braking(i: u32, list: Near, v: vec4<f32>) -> vec3<f32> {
     let mine = place[i];
     var sum = vec3<f32>(0.0);
-    let count = list.liquids + list.solids;
-    for (var k = 0u; k < count; k++) {
-        let j = neighbours[select(solve.columns - 1u - (k - list.liquids), k, k < list.liquids) * params.count + i];
-        let other = place[j];
-        let y = (mine.xyz - other.xyz) * params.per_m;
-        let q = length(y);
-        let u = present[j];
-        let coupling = couple_viscosity(v.w, u.w) * abs(other.w) * steepness(q) / (q * q + SOFT_DISTANCE);
-        sum -= (coupling * dot(v.xyz - u.xyz, y)) * y;
+    for (var k = 0u; k < list.liquids; k += 4u) {
+        let j = liquids_from(k, i);
+        sum -= (brake(j.x, mine.xyz, v) + brake(j.y, mine.xyz, v)) + (brake(j.z, mine.xyz, v) + brake(j.w, mine.xyz, v));
+    }
+    for (var k = 0u; k < list.solids; k += 4u) {
+        let j = solids_from(k, i);
+        sum -= (brake(j.x, mine.xyz, v) + brake(j.y, mine.xyz, v)) + (brake(j.z, mine.xyz, v) + brake(j.w, mine.xyz, v));
     }
     if (list.liquid) {
         for (var c = 0u; c < params.collider_count; c++) {

@@ -11,8 +11,9 @@
 @group(0) @binding(5) var<storage, read_write> place: array<vec4<f32>>;
 // Velocity, viscosity.
 @group(0) @binding(6) var<storage, read_write> motion: array<vec4<f32>>;
-// 1 / density, surface tension.
-@group(0) @binding(7) var<storage, read_write> nature: array<vec2<f32>>;
+// 1 / density, surface tension, viscosity.
+@group(0) @binding(7) var<storage, read_write> nature: array<vec4<f32>>;
+// Of density, then of divergence.
 @group(0) @binding(8) var<storage, read_write> pressure: array<f32>;
 @group(0) @binding(9) var<storage, read_write> errors: array<u32>;
 
@@ -36,9 +37,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let cells = volume * params.per_m * params.per_m * params.per_m;
     let earlier = select(vec2<f32>(0.0), kept[bitcast<u32>(tag.x)], liquid);
+    let viscosity = select(0.0, substance.values[0], liquid);
     place[i] = vec4<f32>(position.xyz, select(-cells, cells, liquid));
-    motion[i] = vec4<f32>(kinematics[n + i].xyz, select(0.0, substance.values[0], liquid));
-    nature[i] = vec2<f32>(volume / position.w, select(0.0, substance.values[1], liquid));
+    motion[i] = vec4<f32>(kinematics[n + i].xyz, viscosity);
+    nature[i] = vec4<f32>(volume / position.w, select(0.0, substance.values[1], liquid), viscosity, 0.0);
     pressure[i] = earlier.x;
     pressure[n + i] = earlier.y;
 }

@@ -3,8 +3,8 @@
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> solve: Solve;
 @group(0) @binding(2) var<storage, read> place: array<vec4<f32>>;
-@group(0) @binding(3) var<storage, read> nature: array<vec2<f32>>;
-@group(0) @binding(4) var<storage, read> neighbours: array<u32>;
+@group(0) @binding(3) var<storage, read> nature: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read> neighbours: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read> near: array<u32>;
 @group(0) @binding(6) var<storage, read> density: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read> pressure: array<f32>;

@@ -24,5 +24,5 @@ fn wall_drag(s: f32) -> f32 {
     let logarithm = 3.0 * q4 * log(q);
     let far = r4 * (0.5 - 0.4 * rest) - 0.05 + 2.0 * q2 * q + logarithm - q4 * (0.75 + 1.2 * q);
     let near_by = 0.04375 - (0.5 * q2 + q4 * (1.908883 - 2.4 * q) + logarithm);
-    return 8.0 * max(select(far, near_by, q < 0.5), 0.0) / q;
+    return (8.0 * WALL_VISCOUS / VISCOUS) * max(select(far, near_by, q < 0.5), 0.0) / q;
 }

@@ -68,14 +68,10 @@ pub const LIGHTEST: f32 = 65_536.0;
 pub const SPH_LIQUID: u32 = substance::SPH_LIQUID;
 /// Counters of the smoothed particles' errors; the last is the stiffest viscous coupling.
 pub const SPH_SLOTS: u32 = 128;
-/// Share of a Jacobi step of the pressures.
-pub const SPH_RELAX: f32 = 0.5;
-/// A wall is felt up to this far, in cells, and this strongly at its surface: a particle of a cubic lattice
-/// half a spacing from it then finds the density that it misses there, 0.150, and twice the gradient, 2.04.
-pub const WALL_REACH: f32 = 0.397;
-/// See [`WALL_REACH`].
-pub const WALL_STRENGTH: f32 = 1.09;
-/// Of the kernel between a liquid and a solid particle, for the same on a lattice that goes on in the solid.
+/// Share of a Jacobi step of the pressures: with momentum, half of one does not settle where particles crowd.
+pub const SPH_RELAX: f32 = 0.3;
+/// Of the kernel between a liquid and a solid particle: one of a cubic lattice half a spacing from a solid whose
+/// lattice goes on from its own finds the density that it misses, 0.150, and twice the gradient, 2.04.
 pub const SOLID_STRENGTH: f32 = 6.48;
 /// Momentum that those steps keep, at most.
 pub const MOMENTUM: f32 = 0.9;
@@ -84,8 +80,11 @@ pub const SHARE_OF_FALL: f32 = 0.01;
 /// Relative errors of density below this are rounding.
 pub const LEAST_ERROR: f32 = 2e-6;
 /// Factor of the viscous force between pairs. 2 (d + 2) = 10 makes the viscosity of a flow that neighbours
-/// follow exactly (Monaghan 2005); they give way to each other, which leaves 0.575 of it in a channel.
-pub const VISCOUS: f32 = 17.4;
+/// follow exactly (Monaghan 2005); they give way to each other, which leaves 0.43 of it in channels 10 to 24 particles
+/// wide and at 50 to 1000 Pa s.
+pub const VISCOUS: f32 = 23.0;
+/// Of walls, which do not give way.
+pub const WALL_VISCOUS: f32 = 10.0;
 /// Ratio of the ends of the viscous spectrum that implicit rounds are made for at most.
 pub const VISCOUS_RANGE: f32 = 1200.0;
 /// Viscosity of unresolved eddies, as a share of density, cell and the speed at which neighbours part.
@@ -94,14 +93,14 @@ pub const EDDIES: f32 = 0.04;
 pub const THIN_OUT: f32 = 25.0;
 /// Neighbours from which on a divergence is believed.
 pub const FEW_NEIGHBOURS: u32 = 20;
-/// Energy of surfaces: k = this times tension and cell.
-pub const TENSION: f32 = 3.0;
-/// Particles of a liquid with tension push each other off when nearer than this, in cells.
-pub const KEEP_APART: f32 = 0.44;
-/// How strongly, as a multiple of tension times cell.
-pub const KEEP_APART_STRENGTH: f32 = 15.0;
-/// Of the pull between particles farther apart than that, likewise.
-pub const COHESION: f32 = 12.0;
+/// Particles of a liquid with tension push each other off when nearer than this, in cells, and pull when farther
+/// apart. Least energy of pairs then has them about half a cell apart.
+pub const PULL_ZERO: f32 = 0.44;
+/// Of the pull between them, such that (pi / 8) int q^4 pull dq = 1 over pull = this (1 - q)^2 (q - [`PULL_ZERO`]).
+pub const PULL: f32 = 8.0 / (std::f32::consts::PI * (1.0 / 168.0 - PULL_ZERO / 105.0));
+/// Share of a liquid's own pull that solids and walls pull it with: cos of the angle of contact is twice that,
+/// less 1. Water wets most things at about 60 degrees.
+pub const WETTING: f32 = 0.75;
 
 /// Sweeps of the singular values, each over all three pairs of columns; most matrices take three.
 pub const SVD_SWEEPS: u32 = 6;
@@ -277,21 +276,19 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("SPH_SLOTS", Constant::U32(SPH_SLOTS)),
         ("STIFFEST", Constant::U32(SPH_SLOTS - 1)),
         ("SPH_RELAX", Constant::F32(SPH_RELAX)),
-        ("WALL_REACH", Constant::F32(WALL_REACH)),
-        ("WALL_STRENGTH", Constant::F32(WALL_STRENGTH)),
         ("SOLID_STRENGTH", Constant::F32(SOLID_STRENGTH)),
         ("MOMENTUM", Constant::F32(MOMENTUM)),
         ("SHARE_OF_FALL", Constant::F32(SHARE_OF_FALL)),
         ("LEAST_ERROR", Constant::F32(LEAST_ERROR)),
         ("EDDIES", Constant::F32(EDDIES)),
         ("VISCOUS", Constant::F32(VISCOUS)),
+        ("WALL_VISCOUS", Constant::F32(WALL_VISCOUS)),
         ("VISCOUS_RANGE", Constant::F32(VISCOUS_RANGE)),
         ("THIN_OUT", Constant::F32(THIN_OUT)),
         ("FEW_NEIGHBOURS", Constant::U32(FEW_NEIGHBOURS)),
-        ("COHESION", Constant::F32(COHESION)),
-        ("TENSION", Constant::F32(TENSION)),
-        ("KEEP_APART", Constant::F32(KEEP_APART)),
-        ("KEEP_APART_STRENGTH", Constant::F32(KEEP_APART_STRENGTH)),
+        ("PULL_ZERO", Constant::F32(PULL_ZERO)),
+        ("PULL", Constant::F32(PULL)),
+        ("WETTING", Constant::F32(WETTING)),
         ("RIGID", Constant::U32(substance::RIGID)),
         ("RIGID_BODIES", Constant::U32(RIGID_BODIES)),
         ("RIGID_LANES", Constant::U32(RIGID_LANES)),

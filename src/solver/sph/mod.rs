@@ -4,7 +4,7 @@
 //! particle lie in the 27 cells around its own, in the order of the sort; such scenes sort before each
 //! substep. The liquid does not touch the grid. Particles that do, solids, are neighbours with a volume
 //! of their own, and what the liquid does to them goes into their velocity before the grid sees them.
-//! Walls weigh the kernel over a half-space, in closed form.
+//! A wall is felt as if the liquid went on behind it in layers, in closed form.
 //!
 //! A substep: lists of neighbours; velocities made free of divergence; weight, tension, viscosity;
 //! velocities that keep the density; motion. Both corrections are relaxed Jacobi rounds over pressures
@@ -24,10 +24,10 @@ use crate::gpu::{Gpu, Recording};
 use bytemuck::{Pod, Zeroable};
 pub(super) use passes::{SphPasses, kernels};
 
-/// Entries of a list of neighbours at first: at rest there are 32, in overlapping bodies twice that.
-const COLUMNS: u32 = 64;
+/// Fours of a list of neighbours at first: at rest there are 32 neighbours, in overlapping bodies twice that.
+const COLUMNS: u32 = 16;
 /// Lists are never longer.
-const COLUMNS_MOST: u32 = 1024;
+const COLUMNS_MOST: u32 = 256;
 /// Rounds at most that keep the density, and that remove divergence.
 const ROUNDS: [u32; 2] = [40, 16];
 /// Mean relative errors that are small enough.
@@ -38,8 +38,9 @@ const LEAST_ROUNDS: [u32; 2] = [2, 1];
 const SLOTS: [u32; 2] = [0, 64];
 /// A substep in free fall from rest moves a particle by half the square of this, in spacings.
 const FALL_SHARE: f64 = 0.1;
-/// Share of the period of the shortest capillary wave, times 1 / sqrt(2 pi) (Brackbill et al. 1992).
-const CAPILLARY: f64 = 0.4;
+/// Share of the period of the shortest capillary wave, times 1 / sqrt(2 pi): half of what a continuous surface
+/// takes (Brackbill et al. 1992), for pairs of particles are stiffer.
+const CAPILLARY: f64 = 0.2;
 /// Most that pairs brake, over their common factor and viscosity / (density cell^2): Gershgorin's bound where particles are as dense as at rest.
 const VISCOUS_BOUND: f64 = 24.0;
 /// What is left of the stiffest viscous error after the implicit rounds.
@@ -76,10 +77,10 @@ pub(super) struct Sph {
     pub motion: wgpu::Buffer,
     pub nature: wgpu::Buffer,
     pub density: wgpu::Buffer,
-    pub surface: wgpu::Buffer,
     pub answer: wgpu::Buffer,
     pub predicted: wgpu::Buffer,
     pub corrected: wgpu::Buffer,
+    pub slowed: wgpu::Buffer,
     pub pressure: wgpu::Buffer,
     pub reached: wgpu::Buffer,
     pub errors: wgpu::Buffer,
@@ -94,14 +95,13 @@ pub(super) struct SphBound {
     /// Of divergence.
     pub press_divergence: wgpu::BindGroup,
     pub correct_divergence: wgpu::BindGroup,
-    pub apply: wgpu::BindGroup,
     pub forces: wgpu::BindGroup,
     /// First, odd and even rounds.
     pub implicit: [wgpu::BindGroup; 3],
-    /// After explicit and after implicit viscosity.
-    pub press_density: [wgpu::BindGroup; 2],
+    pub settle: wgpu::BindGroup,
+    pub press_density: wgpu::BindGroup,
     pub correct_density: wgpu::BindGroup,
-    pub advance: [wgpu::BindGroup; 2],
+    pub advance: wgpu::BindGroup,
 }
 
 impl Sph {
@@ -118,16 +118,16 @@ impl Sph {
             least_density_kg_m3: f32::INFINITY,
             tension_over_density: 0.0,
             solves: [gpu.storage::<Solve>("solver.sph_solve", 1)?, gpu.storage::<Solve>("solver.sph_solve_divergence", 1)?],
-            neighbours: gpu.storage::<u32>("solver.sph_neighbours", COLUMNS as usize * n)?,
+            neighbours: gpu.storage::<[u32; 4]>("solver.sph_neighbours", COLUMNS as usize * n)?,
             near: gpu.storage::<u32>("solver.sph_near", n)?,
             place: vectors("place")?,
             motion: vectors("motion")?,
-            nature: gpu.storage::<[f32; 2]>("solver.sph_nature", n)?,
-            density: vectors("density")?,
-            surface: vectors("surface")?,
+            nature: vectors("nature")?,
+            density: gpu.storage::<[f32; 4]>("solver.sph_density", 2 * n)?,
             answer: gpu.storage::<f32>("solver.sph_answer", n)?,
             predicted: vectors("predicted")?,
             corrected: vectors("corrected")?,
+            slowed: vectors("slowed")?,
             pressure: gpu.storage::<f32>("solver.sph_pressure", 2 * n)?,
             reached: gpu.storage::<f32>("solver.sph_reached", n)?,
             errors: gpu.storage::<u32>("solver.sph_errors", super::constants::SPH_SLOTS as usize)?,
@@ -202,30 +202,28 @@ impl Sph {
             gpu.bind(&p.sph_correct, &[&lists[..], &[&self.pressure, &self.errors, &self.reached]].concat())
         };
         let implicit = |present, next| {
-            let lists = [params, density_solve, colliders, &self.place, &self.nature, &self.neighbours, &self.near, &self.predicted];
+            let lists = [params, density_solve, colliders, &self.place, &self.nature, &self.neighbours, &self.near, &self.corrected];
             gpu.bind(&p.sph_implicit, &[&lists[..], &[present, next, &self.errors]].concat())
         };
-        let advance = |base| {
-            let lists = [params, density_solve, &self.place, &self.nature, &self.neighbours, &self.near, &self.density, &self.pressure, base];
-            gpu.bind(&p.sph_advance, &[&lists[..], &[matter, objects, colliders, kinematics, &self.kept, control]].concat())
-        };
+        let pushed = [params, density_solve, &self.place, &self.nature, &self.neighbours, &self.near, &self.density, &self.pressure, &self.predicted];
+        let moved = [matter, objects, colliders, kinematics, &self.kept, control];
         let places = [params, kinematics, matter, &solver.laws.table, &self.kept];
         let placed = [&self.place, &self.motion, &self.nature, &self.pressure, &self.errors];
-        let cells = [params, &self.place, &self.motion, &self.nature, &grid.cell_start, &grid.cell_end, colliders, density_solve];
-        let found = [&self.neighbours, &self.near, &self.density, &self.surface, &self.answer, control, &self.errors];
-        let lists = [params, divergence_solve, &self.place, &self.nature, &self.neighbours, &self.near, &self.density, &self.pressure, &self.motion];
-        let forced = [params, density_solve, matter, objects, colliders, &self.place, &self.nature, &self.neighbours, &self.near];
+        let cells = [params, &self.place, &self.nature, &grid.cell_start, &grid.cell_end, colliders, density_solve];
+        let found = [&self.neighbours, &self.near, &self.density, &self.answer, control, &self.errors];
+        let around = [params, density_solve, matter, objects, colliders, &self.place, &self.nature, &self.neighbours, &self.near];
+        let forced = [&self.density, &self.pressure, &self.motion, &self.predicted, &self.corrected];
         SphBound {
             place: gpu.bind(&p.sph_place, &[places, placed].concat()),
             near: gpu.bind(&p.sph_near, &[&cells[..], &found[..]].concat()),
             press_divergence: press(divergence_solve, &self.motion),
             correct_divergence: correct(divergence_solve),
-            apply: gpu.bind(&p.sph_apply, &lists),
-            forces: gpu.bind(&p.sph_forces, &[&forced[..], &[&self.surface, &self.motion, &self.predicted]].concat()),
-            implicit: [implicit(&self.predicted, &self.corrected), implicit(&self.corrected, &self.motion), implicit(&self.motion, &self.corrected)],
-            press_density: [press(density_solve, &self.predicted), press(density_solve, &self.motion)],
+            forces: gpu.bind(&p.sph_forces, &[&around[..], &forced[..]].concat()),
+            implicit: [implicit(&self.corrected, &self.motion), implicit(&self.motion, &self.slowed), implicit(&self.slowed, &self.motion)],
+            settle: gpu.bind(&p.sph_settle, &[params, &self.near, &self.slowed, &self.predicted, &self.corrected]),
+            press_density: press(density_solve, &self.predicted),
             correct_density: correct(density_solve),
-            advance: [advance(&self.predicted), advance(&self.motion)],
+            advance: gpu.bind(&p.sph_advance, &[&pushed[..], &moved[..]].concat()),
         }
     }
 
@@ -239,18 +237,23 @@ impl Sph {
             recording.dispatch_with(&p.sph_press, &b.press_divergence, &job(round), groups);
             recording.dispatch_with(&p.sph_correct, &b.correct_divergence, &job(round), groups);
         }
-        recording.dispatch_with(&p.sph_apply, &b.apply, substep, groups);
         let implicit = viscous_rounds > 0;
         recording.dispatch_with(&p.sph_forces, &b.forces, &job(u32::from(implicit)), groups);
         for round in 0..viscous_rounds {
             let bound = if round == 0 { &b.implicit[0] } else { &b.implicit[2 - (round % 2) as usize] };
             recording.dispatch_with(&p.sph_implicit, bound, &job(round), groups);
         }
+        if implicit {
+            recording.dispatch(&p.sph_settle, &b.settle, groups);
+        }
         for round in 0..ROUNDS[0] {
-            recording.dispatch_with(&p.sph_press, &b.press_density[usize::from(implicit)], &job(round), groups);
+            // The first half of the first round came with the forces.
+            if round > 0 {
+                recording.dispatch_with(&p.sph_press, &b.press_density, &job(round), groups);
+            }
             recording.dispatch_with(&p.sph_correct, &b.correct_density, &job(round), groups);
         }
-        recording.dispatch_with(&p.sph_advance, &b.advance[usize::from(implicit)], substep, groups);
+        recording.dispatch_with(&p.sph_advance, &b.advance, substep, groups);
     }
 }
 
@@ -287,7 +290,7 @@ impl Solver {
     pub(super) fn lengthen_lists(&mut self) -> Result<bool, SolverError> {
         let Some(sph) = self.sph.as_mut().filter(|s| s.columns < COLUMNS_MOST) else { return Ok(false) };
         let count = self.params.count as usize;
-        sph.neighbours = self.gpu.storage::<u32>("solver.sph_neighbours", 2 * sph.columns as usize * count)?;
+        sph.neighbours = self.gpu.storage::<[u32; 4]>("solver.sph_neighbours", 2 * sph.columns as usize * count)?;
         sph.columns *= 2;
         sph.upload_solves(&self.gpu, count);
         Ok(true)

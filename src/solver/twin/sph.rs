@@ -25,17 +25,27 @@ fn derivative(f: impl Fn(f64) -> f64, at: f64) -> f64 {
 }
 
 /// W integrated over a plane at a distance from the particle, by the rule of midpoints.
-pub fn wall_slope(s: f64) -> f64 {
+pub fn plane(s: f64) -> f64 {
     let (s, parts) = (s.abs().min(1.0), 500);
     let step = (1.0 - s) / f64::from(parts);
     (0..parts).map(|k| s + (f64::from(k) + 0.5) * step).map(|r| 2.0 * PI * r * weight(r) * step).sum()
 }
 
-/// And over all behind it.
-pub fn wall_share(s: f64) -> f64 {
-    let parts = 100;
+/// Layers half a cell thick behind a wall.
+pub fn wall_density(s: f64) -> f64 {
+    [0.25, 0.75].iter().map(|behind| 0.5 * plane(s + behind)).sum()
+}
+
+/// The pull between two particles.
+pub fn pull(q: f64) -> f64 {
+    f64::from(PULL) * (1.0 - q).powi(2) * (q - f64::from(PULL_ZERO))
+}
+
+/// And of all behind a wall.
+pub fn wall_pull(s: f64) -> f64 {
+    let (s, parts) = (s.clamp(0.0, 1.0), 2000);
     let step = (1.0 - s) / f64::from(parts);
-    (0..parts).map(|k| wall_slope(s + (f64::from(k) + 0.5) * step) * step).sum()
+    (0..parts).map(|k| s + (f64::from(k) + 0.5) * step).map(|q| PI * pull(q) * (q * q - s * s) * step).sum::<f64>() * f64::from(WETTING)
 }
 
 /// Viscous coupling to a wall over which the velocity goes on linearly to 0 on it.
@@ -48,7 +58,7 @@ pub fn wall_drag(s: f64) -> f64 {
         (0..parts).map(|k| ring(z + (f64::from(k) + 0.5) * step)).sum::<f64>()
     };
     let step = (1.0 - s) / f64::from(parts);
-    (0..parts).map(|k| s + (f64::from(k) + 0.5) * step).map(|z| z * layer(z) * step).sum::<f64>() / s
+    (0..parts).map(|k| s + (f64::from(k) + 0.5) * step).map(|z| z * layer(z) * step).sum::<f64>() / s * f64::from(WALL_VISCOUS / VISCOUS)
 }
 
 /// A particle as the passes see it, in the order of the sort.
@@ -68,7 +78,10 @@ pub struct Particle {
     pub neighbours: Vec<usize>,
     pub gradient: DVec3,
     pub density: f64,
-    pub surface: DVec3,
+    /// What walls have of that.
+    pub wall: DVec3,
+    /// Growth of a push along them.
+    pub hidden: f64,
     pub answer: f64,
     pub viscous: f64,
 }
@@ -95,7 +108,8 @@ pub fn near(states: &[ParticleState], around: &Surroundings) -> Vec<Particle> {
             neighbours: Vec::new(),
             gradient: DVec3::ZERO,
             density: 0.0,
-            surface: DVec3::ZERO,
+            wall: DVec3::ZERO,
+            hidden: 0.0,
             answer: 0.0,
             viscous: 0.0,
         }
@@ -114,17 +128,17 @@ pub fn near(states: &[ParticleState], around: &Surroundings) -> Vec<Particle> {
             let (felt, slope) = felt(&me, other, q);
             me.density += other.volume * felt;
             me.gradient += y / q * (other.volume * slope);
-            me.surface += y / q * (other.volume * derivative(weight, q));
             me.answer += me.volume * other.volume * slope * slope * other.lightness;
             me.viscous += 2.0 * pair_viscosity(&me, other) * other.volume * -derivative(weight, q) * q / (q * q + 0.01);
         }
         if me.liquid {
             walls(&mut me, around);
-            me.answer = 1.0 / (me.answer + me.gradient.length_squared() * me.lightness).max(1e-3 * me.lightness);
+            let change = me.gradient.dot(along_walls(&me, me.gradient)) * me.lightness;
+            me.answer = 1.0 / (me.answer + change).max(1e-3 * me.lightness);
         }
         me.viscous *= f64::from(VISCOUS) * me.lightness / (cell * cell);
         (all[i].neighbours, all[i].density, all[i].gradient) = (me.neighbours, me.density, me.gradient);
-        (all[i].surface, all[i].answer, all[i].viscous) = (me.surface, me.answer, me.viscous);
+        (all[i].wall, all[i].hidden, all[i].answer, all[i].viscous) = (me.wall, me.hidden, me.answer, me.viscous);
     }
     all
 }
@@ -151,14 +165,20 @@ fn walls_near(x: DVec3, around: &Surroundings) -> Vec<(f64, DVec3, bool)> {
 
 fn walls(me: &mut Particle, around: &Surroundings) {
     let near = walls_near(me.x, around);
-    let wall_density = |s: f64| f64::from(WALL_STRENGTH) * (1.0 - s / f64::from(WALL_REACH)).max(0.0).powi(2);
+    let open =
+        |but: Option<usize>| -> f64 { near.iter().enumerate().filter(|&(l, _)| Some(l) != but).map(|(_, w)| 1.0 - wall_density(w.0)).product() };
     for (k, &(s, normal, holds)) in near.iter().enumerate() {
-        me.density += wall_density(s);
-        me.gradient += normal * derivative(wall_density, s);
-        let open: f64 = near.iter().enumerate().filter(|&(l, _)| l != k).map(|(_, w)| 1.0 - wall_share(w.0)).product();
-        me.surface -= normal * (wall_slope(s) * open);
+        me.wall += normal * (derivative(wall_density, s) * open(Some(k)));
         me.viscous += if holds { me.viscosity * wall_drag(s) } else { 0.0 };
     }
+    let density = 1.0 - open(None);
+    me.density += density;
+    me.gradient += me.wall * 2.0;
+    me.hidden = density.min(0.5) / (1.0 - density.min(0.5));
+}
+
+fn along_walls(me: &Particle, push: DVec3) -> DVec3 {
+    push + (push - me.wall * (push.dot(me.wall) / me.wall.length_squared().max(1e-12))) * me.hidden
 }
 
 /// `sph_push.wgsl`: change of each velocity by pressures, over `dt_s`.
@@ -169,7 +189,7 @@ pub fn pushed(all: &[Particle], pressure: &[f64], cell: f64, dt_s: f64) -> Vec<D
             let y = (me.x - all[j].x) / cell;
             sum += y.normalize() * (all[j].volume * pressure[j] * felt(me, &all[j], y.length()).1);
         }
-        sum * (-dt_s * me.lightness / cell)
+        along_walls(me, sum) * (-dt_s * me.lightness / cell)
     };
     all.iter().enumerate().map(of).collect()
 }
@@ -188,31 +208,25 @@ pub fn error(all: &[Particle], i: usize, corrected: &[DVec3], of_density: f64, c
     of_density * (me.density - 1.0).min(f64::from(THIN_OUT) * dt_s) + rate / cell * dt_s
 }
 
-/// `sph_forces.wgsl`: velocities after weight, tension and, where `viscous`, viscosity.
+/// `sph_forces.wgsl`: velocities after weight, tension and, where `viscous`, viscosity, but without pressures.
 pub fn forces(all: &[Particle], around: &Surroundings, dt_s: f64, viscous: bool) -> Vec<DVec3> {
     let cell = f64::from(around.params.cell_m);
-    let (apart, strength) = (f64::from(KEEP_APART), f64::from(KEEP_APART_STRENGTH));
     let of = |me: &Particle| {
         let mut sum = DVec3::ZERO;
         for &j in &me.neighbours {
             let other = &all[j];
             let y = (me.x - other.x) / cell;
             let (q, along) = (y.length(), y.normalize());
-            let pull = me.surface * me.tension - if other.liquid { other.surface * other.tension } else { DVec3::ZERO };
-            let first = derivative(weight, q);
-            let second = derivative(|r| derivative(weight, r), q);
-            let hessian = pull * (first / q) + along * ((second - first / q) * pull.dot(along));
-            let push = strength * (1.0 - q / apart).max(0.0) - f64::from(COHESION) * (1.0 - q).powi(2) * (q - apart).max(0.0);
-            let share = 8.0 * (other.volume / me.volume).min(1.0);
-            sum += along * (push * 0.5 * (me.tension + other.tension) * share) - hessian * (f64::from(TENSION) * other.volume);
+            let tension = (me.tension + other.tension) * if me.liquid && other.liquid { 0.5 } else { f64::from(WETTING) };
+            sum -= along * (tension * other.volume * pull(q));
             let approach = (me.v - other.v).dot(along);
             let eddy = f64::from(EDDIES) * cell * approach.abs() * 2.0 / (me.lightness + other.lightness);
             let eta = eddy + if viscous { pair_viscosity(me, other) } else { 0.0 };
-            sum += along * (f64::from(VISCOUS) * eta * other.volume * first * approach * q / (q * q + 0.01));
+            sum += along * (f64::from(VISCOUS) * eta * other.volume * derivative(weight, q) * approach * q / (q * q + 0.01));
         }
         if me.liquid {
             for (s, normal, holds) in walls_near(me.x, around) {
-                sum += normal * (f64::from(TENSION) * me.tension * me.surface.dot(normal) * derivative(wall_slope, s));
+                sum -= normal * (me.tension * wall_pull(s));
                 let along = me.v - normal * me.v.dot(normal);
                 sum -= if holds && viscous { along * (f64::from(VISCOUS) * me.viscosity * wall_drag(s)) } else { DVec3::ZERO };
             }
