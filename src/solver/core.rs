@@ -215,8 +215,12 @@ impl Solver {
     }
 
     /// Moves an object rigidly to where it starts and sets its velocity: F becomes R F.
-    pub fn place(&mut self, object: u32, placement: &Placement) -> Result<(), SolverError> {
+    ///
+    /// What would be moved mostly behind a surface is put in front of it, whole; how far that was.
+    pub fn place(&mut self, object: u32, placement: &Placement) -> Result<Vec3, SolverError> {
         let turn = Mat3::from_quat(placement.rotation.normalize());
+        let way_out = self.way_out(object, turn, placement)?;
+        let placement = &Placement { offset_m: placement.offset_m + way_out, ..*placement };
         let centre = placement.centre_m + placement.offset_m;
         let spin = placement.spin_rad_s;
         // [spin] x, so that v = velocity + spin x (x - centre) has this gradient.
@@ -236,7 +240,18 @@ impl Solver {
             s.set_affine(cross * s.mass_kg);
         })?;
         self.edit_shown(|i, g| if moved[i] { turn * g } else { g })?;
-        self.rigid.iter().try_for_each(|r| r.place(&self.gpu, object, placement))
+        self.rigid.iter().try_for_each(|r| r.place(&self.gpu, object, placement))?;
+        Ok(way_out)
+    }
+
+    /// How much further an object has to go that is moved behind a surface.
+    fn way_out(&self, object: u32, turn: Mat3, placement: &Placement) -> Result<Vec3, SolverError> {
+        if placement.rotation.is_near_identity() && placement.offset_m == Vec3::ZERO {
+            return Ok(Vec3::ZERO);
+        }
+        let goes_to = |s: &ParticleState| turn * (s.position_m - placement.centre_m) + placement.centre_m + placement.offset_m;
+        let points: Vec<Vec3> = self.states()?.iter().filter(|s| s.object() == object).map(goes_to).collect();
+        Ok(obstacles::way_out(&obstacles::colliders(&self.settings), &points))
     }
 
     /// Adds to the velocity of all of an object.

@@ -5,6 +5,9 @@ use crate::spec::ColliderShape;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
+/// Most steps of a way out: one surface may lead behind another.
+const WAYS_OUT: u32 = 8;
+
 /// A collider on the device; see `shaders/solver/contact.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -114,7 +117,6 @@ impl ColliderRecord {
     }
 
     /// Outward normal of a face, for a point beside it.
-    #[cfg(test)]
     pub fn normal(&self, face: u32, x: Vec3) -> Vec3 {
         match self.at[3] as u32 {
             0 => Vec3::from_slice(&self.shape),
@@ -126,6 +128,27 @@ impl ColliderRecord {
             }
         }
     }
+}
+
+/// How far points have to go, all together, so that they are not mostly behind some surface.
+pub(super) fn way_out(colliders: &[ColliderRecord], points: &[Vec3]) -> Vec3 {
+    let mut way = Vec3::ZERO;
+    for _ in 0..WAYS_OUT {
+        let out = colliders.iter().find_map(|c| out_of(c, points, way));
+        match out {
+            Some(out) => way += out,
+            None => break,
+        }
+    }
+    way
+}
+
+/// The way out of one collider, where more than half of the points are in it.
+fn out_of(collider: &ColliderRecord, points: &[Vec3], way: Vec3) -> Option<Vec3> {
+    let touches = || points.iter().map(|&p| (p + way, collider.touch(p + way)));
+    let behind = touches().filter(|(_, t)| t.distance_m < 0.0).count();
+    let (x, deepest) = touches().min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m))?;
+    (2 * behind > points.len()).then(|| collider.normal(deepest.face, x) * -deepest.distance_m)
 }
 
 /// Distance to the nearest surface, infinite where there is none.

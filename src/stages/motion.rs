@@ -154,7 +154,7 @@ impl<'a> Motion<'a> {
             None => {
                 self.draw_captured(&mut world, delivery, sink)?;
                 self.stand(&mut world, delivery, sink, stop)?;
-                world.place(self.spec, self.matter)?;
+                world.place(self.spec, self.matter)?.iter().for_each(|w| sink.warning(w));
             }
         }
         self.spend("simulate.standing", made);

@@ -100,7 +100,9 @@ impl World {
     }
 
     /// Moves every object to where the spec starts it, with its velocity and spin.
-    pub fn place(&mut self, spec: &Spec, matter: &Matter) -> Result<(), SolverError> {
+    /// What the user should know of it.
+    pub fn place(&mut self, spec: &Spec, matter: &Matter) -> Result<Vec<String>, SolverError> {
+        let mut warnings = Vec::new();
         for (index, object) in spec.objects.iter().enumerate() {
             let [x, y, z] = object.rotate_deg.map(|degrees| degrees.to_radians() as f32);
             let placement = Placement {
@@ -111,9 +113,13 @@ impl World {
                 velocity_m_s: vec3(object.velocity_m_s),
                 spin_rad_s: vec3(object.spin_rad_s),
             };
-            self.solver.place(index as u32, &placement)?;
+            let out = self.solver.place(index as u32, &placement)?;
+            if out != glam::Vec3::ZERO {
+                let [x, y, z] = out.to_array();
+                warnings.push(format!("{}: was placed inside a collider and starts in front of it, [{x:.3}, {y:.3}, {z:.3}] m further", object.name));
+            }
         }
-        Ok(())
+        Ok(warnings)
     }
 
     /// The frame that the world is at.

@@ -26,6 +26,24 @@ fn moving(velocity_m_s: Vec3, offset_m: Vec3) -> Placement {
 }
 
 #[test]
+fn what_is_placed_inside_a_collider_starts_in_front_of_it_in_one_piece() {
+    let particles = block(Vec3::ZERO, Vec3::new(0.3, 0.3, 0.1), 0.025, 2e5, 0.3);
+    let sphere = ColliderShape::Sphere(SphereShape { centre_m: [0.0, 0.0, -30.0], radius_m: 20.0 });
+    let colliders = vec![Collider { shape: sphere, friction: 0.3, restitution: 0.0 }];
+    let mut solver = solver(Settings { colliders, ..on_ground(0.3, 0.0) }, &particles);
+    // In the ground and in the sphere under it.
+    let out = solver.place(0, &moving(Vec3::ZERO, Vec3::new(0.2, 0.0, -15.0))).expect("a placement");
+    let states = solver.states().expect("states");
+    let lowest_m = states.iter().map(|s| s.position_m.z).fold(f32::INFINITY, f32::min);
+    assert!(lowest_m.abs() < 1e-3, "{lowest_m}");
+    assert!((out.z - 15.0).abs() < 0.1, "{out}");
+    let apart = states.iter().zip(&particles.position_m).map(|(s, p)| (s.position_m - p - states[0].position_m + particles.position_m[0]).length());
+    assert!(apart.fold(0.0, f32::max) < 1e-4, "in one piece");
+    // A foot in the ground is pushed out by contact, as it runs.
+    assert_eq!(solver.place(0, &moving(Vec3::ZERO, Vec3::new(0.0, 0.0, -0.03))).expect("a placement"), Vec3::ZERO);
+}
+
+#[test]
 fn friction_slows_a_sliding_block_by_mu_g() {
     let particles = block(Vec3::new(0.0, 0.0, -0.005), Vec3::new(0.3, 0.3, 0.1), 0.025, 2e5, 0.3);
     let mut solver = solver(on_ground(0.3, 0.0), &particles);
