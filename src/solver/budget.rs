@@ -6,7 +6,8 @@
 //! and that is said.
 
 use super::state::ParticleState;
-use super::types::{Settings, Softened};
+use super::substance::Substance;
+use super::types::{Settings, Softened, Taut};
 use std::collections::BTreeMap;
 
 /// Substeps that a fiftieth of a second, or a shorter frame, may take for the sake of stiffness.
@@ -34,7 +35,7 @@ pub(super) fn shortest_s(settings: &Settings) -> f64 {
 
 /// Softens what is stiffer than the shortest substep carries; what was softened, one entry an object.
 pub(super) fn afford(states: &mut [ParticleState], settings: &Settings, time_s: f64) -> Vec<Softened> {
-    let fastest_m_s = (f64::from(settings.cfl) * f64::from(settings.cell_m) / shortest_s(settings)) as f32;
+    let fastest_m_s = fastest_m_s(settings);
     let mut softened: BTreeMap<u32, Softened> = BTreeMap::new();
     for s in states {
         let factor = (fastest_m_s / wave_speed_m_s(s)).powi(2);
@@ -44,12 +45,47 @@ pub(super) fn afford(states: &mut [ParticleState], settings: &Settings, time_s: 
         }
         s.mu_pa *= factor;
         s.lambda_pa *= factor;
-        let reason = || format!("stiffer, it would take substeps under {:.1e} s", shortest_s(settings));
-        let entry = softened.entry(s.object()).or_insert_with(|| Softened { object: s.object(), factor, young_pa: 0.0, time_s, reason: reason() });
+        let entry = softened.entry(s.object()).or_insert_with(|| Softened {
+            object: s.object(),
+            what: Taut::Stiffness,
+            factor,
+            value: 0.0,
+            time_s,
+            reason: reason(settings),
+        });
         entry.factor = entry.factor.min(factor);
-        entry.young_pa = entry.young_pa.max(young_pa(s));
+        entry.value = entry.value.max(young_pa(s));
     }
     softened.into_values().collect()
+}
+
+/// Lowers surface tensions whose shortest waves, as long as a cell, outrun the shortest substep: their
+/// modulus is 2 pi sigma / cell. What was lowered, one entry an object.
+pub(super) fn slacken(substances: &mut [Substance], states: &[ParticleState], settings: &Settings, time_s: f64) -> Vec<Softened> {
+    let per_density = fastest_m_s(settings).powi(2) * settings.cell_m / std::f32::consts::TAU;
+    let mut softened: BTreeMap<u32, Softened> = BTreeMap::new();
+    for s in states {
+        let Some(Substance::Liquid { surface_tension_n_m, .. }) = substances.get_mut(s.substance()) else { continue };
+        let factor = per_density * s.mass_kg / s.volume_m3 / surface_tension_n_m.max(f32::MIN_POSITIVE);
+        if factor > 0.999 {
+            continue;
+        }
+        *surface_tension_n_m *= factor;
+        let value = *surface_tension_n_m;
+        let new = Softened { object: s.object(), what: Taut::SurfaceTension, factor: 1.0, value, time_s, reason: reason(settings) };
+        let entry = softened.entry(s.object()).or_insert(new);
+        (entry.factor, entry.value) = (entry.factor * factor, entry.value.min(value));
+    }
+    softened.into_values().collect()
+}
+
+/// Speed of the fastest wave that the shortest substep follows.
+fn fastest_m_s(settings: &Settings) -> f32 {
+    (f64::from(settings.cfl) * f64::from(settings.cell_m) / shortest_s(settings)) as f32
+}
+
+fn reason(settings: &Settings) -> String {
+    format!("with more, it would take substeps under {:.1e} s", shortest_s(settings))
 }
 
 /// Halves the moduli of the objects that a predicate picks.
@@ -58,9 +94,9 @@ pub(super) fn halve(states: &mut [ParticleState], picked: impl Fn(u32) -> bool, 
     for s in states.iter_mut().filter(|s| picked(s.object())) {
         s.mu_pa *= 0.5;
         s.lambda_pa *= 0.5;
-        let new = Softened { object: s.object(), factor: 0.5, young_pa: 0.0, time_s, reason: reason.to_owned() };
+        let new = Softened { object: s.object(), what: Taut::Stiffness, factor: 0.5, value: 0.0, time_s, reason: reason.to_owned() };
         let entry = softened.entry(s.object()).or_insert(new);
-        entry.young_pa = entry.young_pa.max(young_pa(s));
+        entry.value = entry.value.max(young_pa(s));
     }
     softened.into_values().collect()
 }
@@ -85,7 +121,15 @@ mod tests {
         assert!((young_pa(&states[0]) - 1e5).abs() < 1.0);
         let carried_s = f64::from(settings.cfl * settings.cell_m / wave_speed_m_s(&states[1]));
         assert!((carried_s / shortest_s(&settings) - 1.0).abs() < 1e-3, "{carried_s}");
-        assert!((softened[0].young_pa / young_pa(&states[1]) - 1.0).abs() < 1e-3);
+        assert!((softened[0].value / young_pa(&states[1]) - 1.0).abs() < 1e-3);
+        let mut drop = [Substance::Liquid { viscosity_pa_s: 1e-3, surface_tension_n_m: 1e9 }];
+        let tension = slacken(&mut drop, &states[..1], &settings, 0.0);
+        let Substance::Liquid { surface_tension_n_m: sigma, .. } = drop[0] else { unreachable!() };
+        let modulus_pa = std::f32::consts::TAU * sigma / settings.cell_m;
+        let carried_s = f64::from(settings.cfl * settings.cell_m / (modulus_pa / 1000.0).sqrt());
+        assert!((carried_s / shortest_s(&settings) - 1.0).abs() < 1e-3, "{carried_s}");
+        assert_eq!((tension[0].what, tension[0].value), (Taut::SurfaceTension, sigma));
+        assert!(slacken(&mut drop, &states[..1], &settings, 0.0).is_empty());
         let kept = states.clone();
         assert!(afford(&mut states, &settings, 1.0).is_empty());
         assert_eq!(states, kept);

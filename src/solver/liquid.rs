@@ -3,12 +3,13 @@
 //! the surface is worked out that the grid's pass applies until the next sort.
 
 use super::advance::Substep;
+use super::budget;
 use super::constants::{FILL_UNITS, WALL_GRIP, WALL_SOON_S};
 use super::core::Solver;
 use super::grid::GridBuffers;
 use super::passes::SUBSTEP;
 use super::state::{ParticleState, StateBuffers};
-use super::substance::Substance;
+use super::substance::{self, Substance};
 use super::types::SolverError;
 use crate::gpu::{Gpu, Recording};
 
@@ -74,8 +75,14 @@ impl Solver {
         (self.grid, self.window) = (None, None);
     }
 
-    /// The fixed-point units of the liquids' properties, from the particles that have most of them.
+    /// The fixed-point units of the liquids' properties, from the particles that have most of them; no
+    /// more surface tension than the time step affords.
     pub(super) fn scale_liquids(&mut self, states: &[ParticleState]) {
+        let slackened = budget::slacken(&mut self.laws.substances, states, &self.settings, self.time_s);
+        if !slackened.is_empty() {
+            self.gpu.upload(&self.laws.table, &substance::records(&self.laws.substances));
+            self.softened.extend(slackened);
+        }
         let (mut tension, mut viscosity) = (0f32, 0f32);
         for state in states {
             if let Some(Substance::Liquid { viscosity_pa_s, surface_tension_n_m }) = self.laws.substances.get(state.substance()) {

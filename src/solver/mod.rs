@@ -49,7 +49,9 @@ pub use core::Solver;
 pub use fields::velocity_change;
 pub use impact::Sight;
 pub use substance::{Activation, Substance, liquid_bulk_pa};
-pub use types::{Advance, Collider, Field, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError};
+pub use types::{
+    Advance, Collider, Field, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError, Taut,
+};
 
 /// Every pass of the solver, for validation and keys.
 pub fn kernels() -> Vec<KernelSource> {

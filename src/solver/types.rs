@@ -205,15 +205,26 @@ pub struct Placement {
     pub spin_rad_s: Vec3,
 }
 
-/// An object that could only be kept stable with a smaller modulus.
+/// What can ask for more substeps than a frame may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taut {
+    /// Young's modulus, pascals.
+    Stiffness,
+    /// Surface tension, newtons a metre.
+    SurfaceTension,
+}
+
+/// An object that could only be kept stable with a smaller modulus or surface tension.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Softened {
     /// Index of the object.
     pub object: u32,
-    /// Its Young's modulus was multiplied by this, or by no less than this where parts differ.
+    /// What of it was lowered.
+    pub what: Taut,
+    /// It was multiplied by this, or by no less than this where parts differ.
     pub factor: f32,
-    /// The largest modulus that was given up then has this value now, pascals.
-    pub young_pa: f32,
+    /// The largest that was given up then has this value now, in its unit.
+    pub value: f32,
     /// When.
     pub time_s: f64,
     /// Why.

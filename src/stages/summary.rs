@@ -5,7 +5,7 @@ use super::segments::SolverTotals;
 use super::{EventMetrics, ExpectationResult, MemoryMetrics, Metrics, ObjectMetrics, SolverMetrics, SubstepRange, lookup};
 use crate::gpu::Gpu;
 use crate::render::View;
-use crate::solver::Advance;
+use crate::solver::{Advance, Taut};
 use crate::spec::expect::Condition;
 use crate::spec::{Event, Spec, limits};
 use crate::world::bodies::Matter;
@@ -24,14 +24,12 @@ pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
             .softened
             .iter()
             .map(|s| {
-                format!(
-                    "{}: simulated with at most {:.2e} Pa from {:.3} s on, {:.2e} of its stiffness: {}",
-                    name(s.object),
-                    s.young_pa,
-                    s.time_s,
-                    s.factor,
-                    s.reason
-                )
+                let (unit, what) = match s.what {
+                    Taut::Stiffness => ("Pa", "stiffness"),
+                    Taut::SurfaceTension => ("N/m", "surface tension"),
+                };
+                let (name, value, from_s) = (name(s.object), s.value, s.time_s);
+                format!("{name}: simulated with at most {value:.2e} {unit} from {from_s:.3} s on, {:.2e} of its {what}: {}", s.factor, s.reason)
             })
             .collect(),
         undefined: advance.undefined.iter().cloned().collect(),
