@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// The cases of this room.
 pub const CASES: &[Case] = &[Case::new("V28", false, |gpu| checks(gpu, 0..QUICK, &mut |_| ()))];
 /// How many specs a test run draws.
-const QUICK: u64 = 60;
+const QUICK: u64 = 20;
 /// The file that every spec is of, in a folder of its own.
 const SCENE: &str = "block.ply";
 /// Bytes of results that are kept meanwhile.
