@@ -92,11 +92,10 @@ fn recognise(bytes: &[u8], name: &str) -> Result<Format, SceneError> {
         [0, 1, ..] if is_ksplat(bytes) => return unsupported("a .ksplat"),
         _ => {}
     }
-    let front = &bytes[..bytes.len().min(4096)];
-    if front.iter().all(|&b| matches!(b, 9..=13 | 32..=126 | 128..)) && front.iter().any(|b| matches!(b, b' ' | b'\n' | b'{')) {
-        return match front.iter().find(|b| !b.is_ascii_whitespace()) {
-            Some(b'{') => unsupported("JSON, as the meta.json of a .sog or a .gltf is"),
-            _ => not_a_scene("it is text"),
+    if let Some(text) = text(&bytes[..bytes.len().min(4096)]) {
+        return match text.trim_start().starts_with('{') {
+            true => unsupported("JSON, as the meta.json of a .sog or a .gltf is"),
+            false => not_a_scene("it is text"),
         };
     }
     let named_splat = Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("splat"));
@@ -117,6 +116,17 @@ fn recognise(bytes: &[u8], name: &str) -> Result<Format, SceneError> {
         });
     }
     not_a_scene("its first bytes are of no known format")
+}
+
+/// The front of a file as text, where it is UTF-8 in words or lines; its last character may be cut.
+fn text(front: &[u8]) -> Option<&str> {
+    let whole = match std::str::from_utf8(front) {
+        Err(cut) if cut.error_len().is_none() => &front[..cut.valid_up_to()],
+        _ => front,
+    };
+    let text = std::str::from_utf8(whole).ok()?;
+    let written = text.bytes().all(|b| matches!(b, 9..=13 | 32..=126 | 128..));
+    (written && text.contains([' ', '\n', '{'])).then_some(text)
 }
 
 /// mkkellogg's header: version 0.1 and a number of sections, padded with zeros to 4096 bytes, then one of 1024 for each section.
