@@ -2,11 +2,11 @@
 //! scene as captured. And what `"auto"` means before a run.
 
 use super::engine::Engine;
-use super::run::{BACKGROUND, replay_pictures};
+use super::run::replay_pictures;
 use super::{EngineError, RunOptions, still};
 use crate::render::Image;
 use crate::spec::{Auto, Spec};
-use crate::world::{self, Figure};
+use crate::world;
 use crate::{Frame, Sink, Stop, proxy};
 use std::path::Path;
 
@@ -18,20 +18,12 @@ impl Engine {
         if self.store.contains("picture", &ready.picture) {
             return replay_pictures(&self.store, &ready, sink);
         }
-        if let Some(mut player) = self.player(spec, base, options)? {
-            for index in (0..player.frames).take_while(|_| !stop.raised()) {
-                let camera = player.camera;
-                let image = player.picture(self, index, &camera, ready.resolved.size)?;
-                sink.frame(frame(index, ready.resolved.time_s(index, spec.time.fps), image));
-            }
-            return Ok(());
+        let mut player = self.player(spec, base, options)?;
+        for index in (0..player.frames.max(1)).take_while(|_| !stop.raised()) {
+            let (camera, size) = (player.camera, player.size);
+            let image = player.picture(self, index, &camera, size)?;
+            sink.frame(frame(index, ready.resolved.time_s(index, spec.time.fps), image));
         }
-        let gpu = self.device()?.clone();
-        let mut figure = Figure::captured(&gpu, &ready.prepared.value)?;
-        figure.rest();
-        let background = crate::render::parse_colour(&spec.output.background).unwrap_or(BACKGROUND);
-        let image = figure.draw(&ready.resolved.camera, 0.0, ready.resolved.size, background)?.read(&gpu)?;
-        sink.frame(frame(0, 0.0, image));
         Ok(())
     }
 

@@ -1,7 +1,8 @@
-//! A version played back: any frame from any camera, out of the motion that the store has. Nothing is
-//! simulated and nothing is kept.
+//! A version played back: any frame from any camera, out of the motion that the store has, and as captured where it
+//! has none. Nothing is simulated and nothing is kept.
 
 use super::engine::Engine;
+use super::run::BACKGROUND;
 use super::segments::{self, Segment};
 use super::{EngineError, RunOptions};
 use crate::render::Image;
@@ -14,7 +15,7 @@ use std::path::Path;
 /// One version that can be looked at.
 #[derive(Debug)]
 pub struct Player {
-    /// How many frames of motion there are; fewer than the spec asks for while a run still goes on.
+    /// How many frames of motion there are: fewer than the spec asks for while a run still goes on, none before it.
     pub frames: u32,
     /// How many the spec asks for.
     pub frames_total: u32,
@@ -22,10 +23,12 @@ pub struct Player {
     pub fps: u32,
     /// The camera that the spec resolves to.
     pub camera: Camera,
-    /// Width over height of the pictures that the spec resolves to.
-    pub aspect: f64,
+    /// Width and height of the pictures that the spec resolves to.
+    pub size: [u32; 2],
     store: Store,
     segments: Vec<Segment>,
+    /// The first segment whose motion was not there.
+    next: Option<Segment>,
     figure: Figure,
     background: [f32; 3],
     /// The segment whose motion is in memory: its index, its bytes, bytes of one frame.
@@ -34,43 +37,54 @@ pub struct Player {
 }
 
 impl Engine {
-    /// A player of what the store has of a version's motion; none where it has nothing yet.
-    pub fn player(&mut self, spec: &Spec, base: &Path, options: &RunOptions) -> Result<Option<Player>, EngineError> {
+    /// A player of what the store has of a version's motion.
+    pub fn player(&mut self, spec: &Spec, base: &Path, options: &RunOptions) -> Result<Player, EngineError> {
         let ready = self.ready(spec, base, options)?;
         let mut segments = Vec::new();
-        for segment in ready.segments.iter() {
+        for segment in &ready.segments {
             match segments::get(&self.store, segment)? {
                 Some(kept) if kept.meta.frame_bytes > 0 => segments.push(segment.clone()),
                 _ => break,
             }
         }
-        let Some(last) = segments.last() else { return Ok(None) };
-        let frames = last.last + 1;
-        let solids = self.solids(spec, &ready)?;
-        let bound = self.bound(spec, &ready, &solids.value)?;
-        let matter = matter(spec, &ready.prepared.value, &solids.value);
         let gpu = self.device()?.clone();
-        let mut figure = Figure::new(&gpu, &ready.prepared.value, &bound.value, &matter.particles.position_m, spec.skin.weights)?;
-        if matter.sheds_shape() {
-            figure.shed()?;
-        }
-        Ok(Some(Player {
-            frames,
+        let figure = if segments.is_empty() {
+            let mut figure = Figure::captured(&gpu, &ready.prepared.value)?;
+            figure.rest();
+            figure
+        } else {
+            let solids = self.solids(spec, &ready)?;
+            let bound = self.bound(spec, &ready, &solids.value)?;
+            let matter = matter(spec, &ready.prepared.value, &solids.value);
+            let mut figure = Figure::new(&gpu, &ready.prepared.value, &bound.value, &matter.particles.position_m, spec.skin.weights)?;
+            if matter.sheds_shape() {
+                figure.shed()?;
+            }
+            figure
+        };
+        Ok(Player {
+            frames: segments.last().map_or(0, |last| last.last + 1),
             frames_total: ready.resolved.frames,
             fps: spec.time.fps,
             camera: ready.resolved.camera,
-            aspect: f64::from(ready.resolved.size[0]) / f64::from(ready.resolved.size[1].max(1)),
+            size: ready.resolved.size,
             store: self.store.clone(),
+            next: ready.segments.get(segments.len()).cloned(),
             segments,
             figure,
-            background: crate::render::parse_colour(&spec.output.background).unwrap_or_default(),
+            background: crate::render::parse_colour(&spec.output.background).unwrap_or(BACKGROUND),
             held: None,
             posed: None,
-        }))
+        })
     }
 }
 
 impl Player {
+    /// Whether the store has more motion by now: another player would show it.
+    pub fn is_behind(&self) -> bool {
+        self.next.as_ref().is_some_and(|segment| self.store.contains("motion", &segment.key))
+    }
+
     /// Draws one frame; an index behind the last one draws the last one.
     pub fn picture(&mut self, engine: &mut Engine, index: u32, camera: &Camera, size: [u32; 2]) -> Result<Image, EngineError> {
         let index = index.min(self.frames.saturating_sub(1));

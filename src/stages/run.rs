@@ -115,7 +115,7 @@ fn warnings(ready: &Ready, solids: &[crate::proxy::Solid], matter: &Matter) -> V
     warnings.extend(solids.iter().flat_map(|s| s.warnings.iter().cloned()));
     warnings.extend(matter.warnings.iter().cloned());
     if ready.resolved.reframed {
-        warnings.push("the predicted path leaves the session's picture, so the camera was framed anew".to_owned());
+        warnings.push("the predicted path does not suit the session's picture, so the camera was framed anew".to_owned());
     }
     warnings
 }

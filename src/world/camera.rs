@@ -3,7 +3,7 @@
 use super::ballistics::{self, Path};
 use super::{ObjectFacts, Prepared, support_below};
 use crate::spec::{Auto, Camera, Spec};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// From the target towards the eye in plan: behind (-x) and to the right (-y), so that +y is left on
 /// the screen too and forward goes away to the right.
@@ -18,6 +18,9 @@ const FILL: f64 = 0.88;
 const FAR_SIZES: f64 = 2.5;
 /// How far from its middle what flows is followed, in longest sides: what runs on farther is a film on the ground.
 const PUDDLE_SIZES: f64 = 0.8;
+/// The session's camera is left where the path spans less of the picture than this, and a frame of its own would
+/// show more: after a long shot, what stays in place is a speck in it.
+const LEAST_SPAN: f64 = 0.3;
 /// A Gaussian is seen as far from its centre, in its largest standard deviations.
 const SEEN_SIGMAS: f32 = 1.5;
 
@@ -64,22 +67,36 @@ impl Outline {
                 let Some(shift) = way.iter().copied().max_by(along) else { continue };
                 points.push(edge + shift);
             }
-            if let Some((shift, radius_m)) = puddle {
+            if let Some((shift, radius_m)) = puddle.filter(|(shift, _)| near(&shift)) {
                 points.extend(rim(spec, prepared, object, shift, radius_m.min(PUDDLE_SIZES * size_m)));
             }
         }
         Outline(points)
     }
 
-    /// Whether it lies within `fill` of the picture's half-width and half-height.
-    pub fn within(&self, camera: &Camera, aspect: f64, fill: f64) -> bool {
+    /// Where its points are seen: right and up of the middle, in half-widths and half-heights of the picture. `None`
+    /// where one is behind the camera.
+    fn seen(&self, camera: &Camera, aspect: f64) -> Option<Vec<DVec2>> {
         let eye = DVec3::from(camera.eye_m);
         let [right, up, forward] = axes(DVec3::from(camera.target_m) - eye);
-        let half = (camera.fov_deg.to_radians() / 2.0).tan() * fill;
-        self.0.iter().map(|p| *p - eye).all(|p| {
+        let half = (camera.fov_deg.to_radians() / 2.0).tan();
+        let place = |p: DVec3| {
             let depth = p.dot(forward);
-            depth > 1e-6 && p.dot(right).abs() <= depth * half * aspect && p.dot(up).abs() <= depth * half
-        })
+            (depth > 1e-6).then(|| DVec2::new(p.dot(right) / aspect, p.dot(up)) / (depth * half))
+        };
+        self.0.iter().map(|p| place(*p - eye)).collect()
+    }
+
+    /// Whether it lies within `fill` of the picture's half-width and half-height.
+    pub fn within(&self, camera: &Camera, aspect: f64, fill: f64) -> bool {
+        self.seen(camera, aspect).is_some_and(|points| points.iter().all(|p| p.abs().max_element() <= fill))
+    }
+
+    /// Share of the picture's width or height, whichever is larger, that it spans.
+    fn span(&self, camera: &Camera, aspect: f64) -> f64 {
+        let points = self.seen(camera, aspect).unwrap_or_default();
+        let (low, high) = points.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+        0.5 * (high - low).max_element().max(0.0)
     }
 
     /// The automatic camera for a picture of `aspect` = width / height.
@@ -122,15 +139,15 @@ fn axes(toward: DVec3) -> [DVec3; 3] {
     [right, right.cross(forward), forward]
 }
 
-/// The camera of one run: as the spec says; else the session's, while it holds the predicted path;
-/// else a new frame.
+/// The camera of one run: as the spec says; else the session's, while it holds the predicted path and shows it large
+/// enough; else a new frame.
 pub fn resolve(spec: &Spec, prepared: &Prepared, duration_s: f64, aspect: f64, session: Option<Camera>) -> Framed {
     let facts = prepared.object_facts(spec);
     let outline = |far_sizes: f64| Outline::new(spec, prepared, &facts, duration_s, far_sizes);
     let near = outline(FAR_SIZES);
     let (camera, reframed) = match (spec.camera, session) {
         (Auto::Value(camera), _) => (camera, false),
-        (Auto::Auto, Some(camera)) if near.within(&camera, aspect, 1.0) => (camera, false),
+        (Auto::Auto, Some(camera)) if near.within(&camera, aspect, 1.0) && near.span(&camera, aspect) >= LEAST_SPAN => (camera, false),
         (Auto::Auto, session) => (near.frame(aspect), session.is_some()),
     };
     Framed { camera, reframed, leaves: !outline(f64::INFINITY).within(&camera, aspect, 1.0) }
@@ -175,6 +192,11 @@ mod tests {
         (Spec::of_scene("slab.splat"), prepared)
     }
 
+    /// From the eye to the target.
+    fn distance_of(camera: Camera) -> f64 {
+        (DVec3::from(camera.eye_m) - DVec3::from(camera.target_m)).length()
+    }
+
     fn outline(spec: &Spec, prepared: &Prepared, far_sizes: f64) -> Outline {
         Outline::new(spec, prepared, &prepared.object_facts(spec), 2.0, far_sizes)
     }
@@ -189,8 +211,7 @@ mod tests {
         }
         // As high as the picture, but for the margin and what the view from above adds.
         let camera = outline.frame(16.0 / 9.0);
-        let distance = (DVec3::from(camera.eye_m) - DVec3::from(camera.target_m)).length();
-        let share = 1.0 / (2.0 * distance * (camera.fov_deg.to_radians() / 2.0).tan());
+        let share = 1.0 / (2.0 * distance_of(camera) * (camera.fov_deg.to_radians() / 2.0).tan());
         assert!(share > 0.62, "{share}");
     }
 
@@ -205,8 +226,8 @@ mod tests {
         spec.objects[0].velocity_m_s = [0.0, 8.0, 4.0];
         let far = resolve(&spec, &prepared, 2.0, aspect, None);
         let whole = outline(&spec, &prepared, f64::INFINITY).frame(aspect);
-        let distance = |camera: &Camera| (DVec3::from(camera.eye_m) - DVec3::from(camera.target_m)).length();
-        assert!(far.leaves && distance(&far.camera) < 0.7 * distance(&whole), "{} of {}", distance(&far.camera), distance(&whole));
+        let (kept, wide) = (distance_of(far.camera), distance_of(whole));
+        assert!(far.leaves && kept < 0.7 * wide, "{kept} of {wide}");
         // A drop is held from where it starts to where it lands, however high.
         spec.objects[0].velocity_m_s = [0.0; 3];
         spec.objects[0].offset_m = [0.0, 0.0, 8.0];
@@ -220,12 +241,16 @@ mod tests {
         let distance = |spec: &Spec| {
             let framed = resolve(spec, &prepared, 2.0, aspect, None);
             assert!(!framed.leaves);
-            (DVec3::from(framed.camera.eye_m) - DVec3::from(framed.camera.target_m)).length()
+            distance_of(framed.camera)
         };
         let dry = distance(&spec);
         spec.objects[0].material = crate::spec::presets::material("water").unwrap().material.clone();
         let wet = distance(&spec);
         assert!(wet > 1.02 * dry && wet < 1.6 * dry, "{dry} {wet}");
+        // Where it runs far away, the picture stays where it began.
+        spec.objects[0].velocity_m_s = [0.0, 30.0, 0.0];
+        let gone = distance_of(resolve(&spec, &prepared, 2.0, aspect, None).camera);
+        assert!(gone < 6.0 * dry, "{dry} {gone}");
     }
 
     #[test]
@@ -237,6 +262,12 @@ mod tests {
         spec.objects[0].velocity_m_s = [0.0, 0.0, 4.0];
         let next = resolve(&spec, &prepared, 2.0, aspect, Some(first));
         assert!(next.reframed && !next.leaves && next.camera != first);
+        // Nor does it stay where a long shot left it.
+        spec.objects[0].velocity_m_s = [0.0, 0.0, 12.0];
+        let far = resolve(&spec, &prepared, 8.0, aspect, None).camera;
+        spec.objects[0].velocity_m_s = [0.0; 3];
+        assert_eq!(resolve(&spec, &prepared, 2.0, aspect, Some(far)), Framed { camera: first, reframed: true, leaves: false });
+        spec.objects[0].velocity_m_s = [0.0, 0.0, 4.0];
         // A camera that was set is never left, but that the path leaves it is told.
         spec.camera = Auto::Value(first);
         assert_eq!(resolve(&spec, &prepared, 2.0, aspect, None), Framed { camera: first, reframed: false, leaves: true });

@@ -49,7 +49,6 @@ pub struct Window {
     playing: bool,
     orbit: Option<Orbit>,
     shown: [Option<Shown>; 2],
-    not_run: Option<String>,
     running: Option<f32>,
     trouble: Option<String>,
     asked: Option<Wish>,
@@ -80,7 +79,6 @@ impl Window {
             playing: true,
             orbit: None,
             shown: [None, None],
-            not_run: None,
             running: None,
             trouble: None,
             asked: None,
@@ -99,6 +97,12 @@ impl Window {
         self.shown[0].as_ref().map(|s| &s.extent)
     }
 
+    /// The first of the shown versions that has no motion yet.
+    fn unmoved(&self) -> Option<String> {
+        let places = if self.other.is_some() { 2 } else { 1 };
+        self.shown[..places].iter().flatten().find(|s| s.extent.frames == 0).map(|s| s.version.clone())
+    }
+
     /// Seconds of motion that are there.
     fn end_s(&self) -> f64 {
         self.extent().map_or(0.0, |e| f64::from(e.frames.saturating_sub(1)) / f64::from(e.fps.max(1)))
@@ -113,7 +117,6 @@ impl Window {
             match news {
                 News::Versions { title, list, head } => {
                     if self.head != head {
-                        self.not_run = None;
                         self.trouble = None;
                     }
                     (self.title, self.versions, self.head) = (title, list, head);
@@ -125,11 +128,7 @@ impl Window {
                     self.pixel_s = self.asked_at.elapsed().as_secs_f64() / f64::from(size[0] * size[1]);
                     let all = self.asked.as_ref().is_none_or(|wish| place + 1 >= wish.versions.len());
                     self.waiting &= !all;
-                    (self.not_run, self.trouble) = (None, None);
-                }
-                News::NotRun(version) => {
-                    self.not_run = Some(version);
-                    self.waiting = false;
+                    self.trouble = None;
                 }
                 News::Running(share) => {
                     self.running = (share < 1.0).then_some(share);
@@ -278,7 +277,8 @@ impl Window {
     /// The size to ask for: smaller on a slow device while something moves, whole at rest.
     fn affordable(&self, size: [f32; 2]) -> [u32; 2] {
         let cost_s = self.pixel_s * f64::from(size[0] * size[1]);
-        let coarse = if self.playing || self.moving { (cost_s / PATIENCE_S).sqrt().clamp(1.0, COARSEST) } else { 1.0 };
+        let moves = self.moving || self.playing && self.end_s() > 0.0;
+        let coarse = if moves { (cost_s / PATIENCE_S).sqrt().clamp(1.0, COARSEST) } else { 1.0 };
         size.map(|s| (f64::from(s) / coarse).round() as u32)
     }
 
@@ -314,30 +314,34 @@ impl Window {
         self.asked_at = Instant::now();
     }
 
+    /// What is to be known about the picture, on a plate over its lower part.
     fn notices(&mut self, ui: &mut Ui, area: egui::Rect) {
-        let mut run = None;
-        let place = egui::Rect::from_center_size(area.center_bottom() - egui::vec2(0.0, 60.0), egui::vec2(area.width().min(520.0), 90.0));
-        ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
-            ui.vertical_centered(|ui| {
-                if let Some(share) = self.running {
-                    ui.add(egui::ProgressBar::new(share).text("simulating").desired_width(320.0));
-                } else if let Some(version) = self.not_run.as_ref().filter(|name| self.versions.iter().any(|v| v.name == **name && v.under_way)) {
-                    ui.label(format!("{version} is being simulated; it shows as soon as the first quarter second is done"));
-                } else if let Some(version) = &self.not_run {
-                    ui.label(format!("{version} has no motion in the store yet (on this device, at this quality)"));
-                    if ui.button("simulate it").clicked() {
-                        run = Some(version.clone());
-                    }
+        let unmoved = self.unmoved();
+        if self.running.is_none() && unmoved.is_none() && self.trouble.is_none() {
+            return;
+        }
+        let place = egui::Rect::from_center_size(area.center_bottom() - egui::vec2(0.0, 60.0), egui::vec2(area.width().min(560.0), 90.0));
+        let plate = egui::UiBuilder::new().max_rect(place).layout(egui::Layout::top_down(egui::Align::Center));
+        ui.scope_builder(plate, |ui| egui::Frame::popup(ui.style()).show(ui, |ui| self.notice(ui, unmoved)));
+    }
+
+    fn notice(&mut self, ui: &mut Ui, unmoved: Option<String>) {
+        if let Some(share) = self.running {
+            ui.add(egui::ProgressBar::new(share).text("simulating").desired_width(320.0));
+        } else if let Some(version) = unmoved {
+            if self.versions.iter().any(|v| v.name == version && v.under_way) {
+                ui.label(format!("{version} as captured: if it is being simulated, it moves as soon as the first quarter second is done"));
+            } else {
+                ui.label(format!("{version} as captured: the store has no motion of it yet (on this device, at this quality)"));
+                if ui.button("simulate it").clicked() {
+                    self.running = Some(0.0);
+                    // The studio's thread ends only with the window.
+                    let _ = self.requests.send(Request::Run(version));
                 }
-                if let Some(text) = &self.trouble {
-                    ui.colored_label(Color32::from_rgb(170, 40, 30), text);
-                }
-            });
-        });
-        if let Some(version) = run {
-            self.running = Some(0.0);
-            // The studio's thread ends only with the window.
-            let _ = self.requests.send(Request::Run(version));
+            }
+        }
+        if let Some(text) = &self.trouble {
+            ui.colored_label(Color32::from_rgb(240, 120, 100), text);
         }
     }
 }

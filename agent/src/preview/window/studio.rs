@@ -77,7 +77,7 @@ pub struct Listed {
 /// What one version can show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extent {
-    /// Frames of motion that are there.
+    /// Frames of motion that are there; without any the picture is the scene as captured.
     pub frames: u32,
     /// Frames that the spec asks for.
     pub frames_total: u32,
@@ -113,8 +113,6 @@ pub enum News {
         /// What the version can show.
         extent: Extent,
     },
-    /// A version whose motion is not in the store.
-    NotRun(String),
     /// How far a run is, 0 to 1.
     Running(f32),
     /// Something failed.
@@ -223,41 +221,35 @@ impl Studio {
         RunOptions { camera: self.session.as_ref().and_then(Session::camera), ..self.setting.options.clone() }
     }
 
-    /// Whether a wished version had fewer frames than its spec asks for when it was last drawn.
+    /// Whether a wished version has more to show than when it was last drawn.
     fn grows(&self, wish: &Wish) -> bool {
-        let short = |name: &String| {
-            let ready = self.players.iter().find(|r| r.version == *name);
-            ready.is_none_or(|r| r.player.frames < r.player.frames_total)
-        };
-        wish.versions.iter().any(short)
+        let ready = |name: &String| self.players.iter().find(|r| r.version == *name);
+        wish.versions.iter().any(|name| ready(name).is_none_or(|r| r.player.is_behind()))
     }
 
     /// The player of a version, made where there is none or the store has more of it by now.
-    fn player(&mut self, version: &str) -> Result<Option<usize>, Failure> {
+    fn player(&mut self, version: &str) -> Result<usize, Failure> {
         let spec = self.spec(version)?;
         let hash = spec.hash();
-        let fresh = |r: &Ready| r.player.frames >= r.player.frames_total || r.looked.elapsed() < LOOK;
+        let fresh = |r: &Ready| r.looked.elapsed() < LOOK || !r.player.is_behind();
         if let Some(at) = self.players.iter().position(|r| r.version == version && r.spec_hash == hash && fresh(r)) {
-            return Ok(Some(at));
+            return Ok(at);
         }
         self.players.retain(|r| r.version != version);
         let options = self.options();
-        let Some(player) = self.engine.player(&spec, Path::new(""), &options)? else { return Ok(None) };
+        let player = self.engine.player(&spec, Path::new(""), &options)?;
         if self.players.len() >= PLAYERS {
             self.players.pop_front();
         }
         self.players.push_back(Ready { version: version.to_owned(), spec_hash: hash, looked: Instant::now(), player });
-        Ok(Some(self.players.len() - 1))
+        Ok(self.players.len() - 1)
     }
 
     fn draw(&mut self, wish: &Wish) -> Result<(), Failure> {
         for (place, version) in wish.versions.iter().enumerate() {
-            let Some(at) = self.player(version)? else {
-                self.say(News::NotRun(version.clone()));
-                continue;
-            };
+            let at = self.player(version)?;
             let player = &mut self.players[at].player;
-            let aspect = player.aspect;
+            let aspect = f64::from(player.size[0]) / f64::from(player.size[1].max(1));
             let camera = widened(&wish.camera.unwrap_or(player.camera), aspect, wish.size);
             let image = player.picture(&mut self.engine, wish.frame, &camera, wish.size)?;
             let extent = Extent { frames: player.frames, frames_total: player.frames_total, fps: player.fps, camera: player.camera, aspect };
