@@ -30,6 +30,8 @@ pub const RATE_PER_S: f64 = 1e6;
 pub const STIFFNESS_PER_S2: f64 = 1e9;
 /// Points of a path.
 pub const PATH: u32 = 32;
+/// Points of the path of a pin: some rounds of a curve.
+pub const PIN_PATH: u32 = 256;
 /// Steps of all expressions of a spec together.
 pub const EXPRESSION_STEPS: usize = 8192;
 /// Magnitude of a velocity: beyond it a step of the solver crosses a cell.

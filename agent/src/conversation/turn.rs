@@ -8,7 +8,7 @@ use crate::history::{Session, Version};
 use crate::language::{self, Reply, VersionRef};
 use phystalk::Stop;
 use phystalk::gpu::Tier;
-use phystalk::spec::{Camera, Edit, Spec};
+use phystalk::spec::{Auto, Camera, Edit, Spec};
 use phystalk::stages::{Engine, Metrics, Plan, Report, RunOptions};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -317,9 +317,9 @@ impl Conversation {
         Ok(())
     }
 
-    /// The first version's camera is the session's, so that versions compare.
+    /// The first camera that placed itself is the session's, so that versions compare.
     fn keep_camera(&mut self, report: &Report) -> Result<(), Failure> {
-        if self.options.camera.is_none() {
+        if self.options.camera.is_none() && self.session.spec().camera == Auto::Auto {
             self.session.keep_camera(&report.camera)?;
             self.options.camera = Some(report.camera);
         }

@@ -29,6 +29,8 @@ pub struct Draft<'a> {
     pub gloss: Vec<String>,
     /// The objects that were spoken of last.
     subject: Option<Vec<usize>>,
+    /// Whether the newest turn was taken back first.
+    pub undone: bool,
     /// Whether this request sent something up or placed it high: it falls by itself.
     pub aloft: bool,
 }
@@ -36,7 +38,8 @@ pub struct Draft<'a> {
 impl<'a> Draft<'a> {
     /// Starts from `spec`.
     pub fn new(context: &'a Context<'a>, tokens: &'a [Token], spec: Spec) -> Draft<'a> {
-        Draft { context, tokens, spec, gloss: Vec::new(), subject: None, aloft: false }
+        let undone = spec != *context.spec;
+        Draft { context, tokens, spec, gloss: Vec::new(), subject: None, undone, aloft: false }
     }
 
     /// Some words of the request, as written.

@@ -85,6 +85,7 @@ pub fn understand(text: &str, context: &Context) -> Reply {
     let names = Names::new(context.spec.objects.iter().map(|o| o.name.as_str()));
     let mut reading = phrases::read(tokens::tokenise(text), &names);
     reference::demote_parts(&mut reading);
+    reference::demote_scenery(&mut reading);
     if context.spec.objects.len() == 1 {
         reference::presume(&mut reading, 0);
     }
@@ -111,7 +112,6 @@ fn refused(reason: String, reading: &Reading) -> Reply {
 
 /// Reads clause by clause into edits, starting from `start`.
 fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
-    let undone = start != *context.spec;
     let mut draft = Draft::new(context, &reading.tokens, start);
     let mut clauses = clause::split(reading.phrases.clone());
     // The world of the turn holds for all of it: "jump 30 cm and do it on the moon" is 30 cm on the moon.
@@ -155,7 +155,7 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
     }
     let mut gloss: Vec<String> = reading.corrections.clone();
     gloss.extend(reading.presumed.iter().map(|span| format!("{} is taken for {}, the only object here", draft.words(span.clone()), draft.name(0))));
-    if undone {
+    if draft.undone {
         gloss.push("the turn before is undone".to_owned());
     }
     gloss.append(&mut draft.gloss);

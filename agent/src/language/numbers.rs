@@ -33,6 +33,8 @@ pub enum Dimension {
     Times,
     /// A number alone.
     Plain,
+    /// In something that nobody knows.
+    Strange,
 }
 
 /// A number with what it measures, in SI units.
@@ -292,9 +294,11 @@ pub const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("min minute minutes", 60.0, SECOND),
     ("h hour hours", 3600.0, SECOND),
     ("kg kilo kilos kilogram kilograms", 1.0, KILOGRAM),
+    ("gram grams", 1e-3, KILOGRAM),
     ("deg degree degrees", TAU / 360.0, RADIAN),
     ("rad radian radians", 1.0, RADIAN),
     ("turn turns revolution revolutions rev revs rotation rotations", TAU, RADIAN),
+    ("hz hertz", TAU, [0, -1, 0, 1, 0]),
     ("rpm", TAU / 60.0, [0, -1, 0, 1, 0]),
     ("mps", 1.0, SPEED),
     ("kmh kph", 1.0 / 3.6, SPEED),
@@ -324,7 +328,9 @@ fn base_unit(word: &str) -> Option<Unit> {
 
 /// Reads a unit: "m", "m/s2", "metres per second", "turns a second", "kilograms per cubic metre", "metres per second squared".
 fn unit(tokens: &[Token], at: usize) -> Option<(Unit, usize)> {
-    let mut unit = base_unit(word(tokens, at))?;
+    // A g alone is free fall, one over something is a gram.
+    let gram = word(tokens, at) == "g" && matches!(word(tokens, at + 1), "/" | "per");
+    let mut unit = base_unit(if gram { "gram" } else { word(tokens, at) })?;
     let mut end = at + 1;
     loop {
         let mut below_at = match word(tokens, end) {
@@ -396,6 +402,8 @@ mod tests {
             ("0.5 MPa", 5e5, Pressure),
             ("500 kg/m3", 500.0, Density),
             ("500 kilograms per cubic metre", 500.0, Density),
+            ("2 g/cm3", 2000.0, Density),
+            ("10 Hz", 62.831853072, AngularSpeed),
             ("100 fps", 100.0, FrameRate),
             ("24 frames per second", 24.0, FrameRate),
             ("20 %", 20.0, Percent),

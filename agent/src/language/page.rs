@@ -8,6 +8,7 @@ use super::numbers::UNITS;
 use super::sense::{Fate, Field, Form, Moment, Part, Property, Sense, Unbuilt, Verb};
 use super::tests::Stage;
 use super::{Reply, say};
+use phystalk::spec::ProxyKind;
 use std::fmt::Write;
 
 /// Examples under headings; turns before the last are separated by `|`.
@@ -262,6 +263,11 @@ fn meaning(sense: &Sense) -> String {
         Sense::Turn(word) => format!("{word:?}").to_lowercase(),
         Sense::Version(number) => format!("v{number}"),
         Sense::Preposition(preposition) => format!("*{preposition:?}*").to_lowercase(),
+        Sense::Scenery(thing) => format!("a thing to meet: {thing:?}").to_lowercase(),
+        Sense::Overhead => "what things hang from".to_owned(),
+        Sense::Course(course) => format!("a course: {course:?}").to_lowercase(),
+        Sense::Proxy(ProxyKind::Hull) => "solid as its convex hull".to_owned(),
+        Sense::Proxy(ProxyKind::Voxel) => "solid as its Gaussians are".to_owned(),
         Sense::Ground => "the ground, or what is on it".to_owned(),
         Sense::It => "what was spoken of".to_owned(),
         Sense::All => "all objects".to_owned(),
@@ -320,6 +326,7 @@ fn part_name(part: Part) -> &'static str {
         Part::BackHalf => "the back half",
         Part::Flowers => "what is above the height at which its colours change most",
         Part::Pot => "what is below that",
+        Part::Rest => "all that is no part of its own",
     }
 }
 

@@ -92,6 +92,7 @@ pub fn read(mut tokens: Vec<Token>, names: &Names) -> Reading {
             None => at = i + 1,
         }
     }
+    doubt_units(&mut phrases);
     lead_measures(&mut phrases);
     scale_gravity(&mut phrases);
     hear_complaints(&mut phrases, &tokens);
@@ -249,6 +250,19 @@ fn lead_measures(phrases: &mut [Phrase]) {
     }
 }
 
+/// A bare number right before a word that nobody knows is a number of that: to take it for metres would be to guess.
+fn doubt_units(phrases: &mut [Phrase]) {
+    for i in 1..phrases.len() {
+        let strange = phrases[i].sense == Sense::Unknown;
+        if let Sense::Measure(quantity, _) = &mut phrases[i - 1].sense
+            && strange
+            && quantity.dimension == Dimension::Plain
+        {
+            quantity.dimension = Dimension::Strange;
+        }
+    }
+}
+
 /// A bare number before "gravity" says how many times it: "a sixth of the gravity".
 fn scale_gravity(phrases: &mut [Phrase]) {
     for i in 0..phrases.len() {
@@ -318,25 +332,35 @@ enum Place {
     Noun,
 }
 
-/// Words of the lexicon and units that a misspelt word may have meant, and which of them may stand after "the".
+/// Words of the lexicon and units; those that a misspelt word may have meant, which stand alone or begin something; and
+/// which of them may stand after "the".
 struct Known {
     all: BTreeSet<&'static str>,
+    heads: BTreeSet<&'static str>,
     nouns: BTreeSet<&'static str>,
     adjectives: BTreeSet<&'static str>,
 }
 
 static KNOWN: LazyLock<Known> = LazyLock::new(|| {
-    let mut known = Known { all: BTreeSet::new(), nouns: BTreeSet::new(), adjectives: BTreeSet::new() };
+    let mut known = Known { all: BTreeSet::new(), heads: BTreeSet::new(), nouns: BTreeSet::new(), adjectives: BTreeSet::new() };
     for entry in SECTIONS.iter().flat_map(|s| s.entries) {
         let noun = matches!(
             entry.sense,
-            Sense::Material(_) | Sense::Gravity(_) | Sense::Property(_) | Sense::Part(_) | Sense::Direction(_) | Sense::Camera | Sense::Ground
+            Sense::Material(_)
+                | Sense::Gravity(_)
+                | Sense::Property(_)
+                | Sense::Part(_)
+                | Sense::Direction(_)
+                | Sense::Camera
+                | Sense::Ground
+                | Sense::Scenery(_)
         );
         let adjective = matches!(entry.sense, Sense::Quality(_, _, Form::Plain));
         // What is refused is refused for its own name, never for one that looks like it.
         if matches!(entry.sense, Sense::Unbuilt(_)) {
             continue;
         }
+        known.heads.extend(entry.words.split('|').filter_map(|phrase| phrase.split(' ').next()).filter(|w| w.len() >= 4));
         for word in entry.words.split(['|', ' ']).filter(|w| w.len() >= 4) {
             known.all.insert(word);
             if noun {
@@ -349,6 +373,7 @@ static KNOWN: LazyLock<Known> = LazyLock::new(|| {
     }
     for unit in numbers::UNITS.iter().flat_map(|(names, ..)| names.split(' ')).filter(|w| w.len() >= 4) {
         known.all.insert(unit);
+        known.heads.insert(unit);
         known.nouns.insert(unit);
     }
     known
@@ -378,7 +403,7 @@ fn correct(word: &str, names: &Names, place: Place) -> Option<String> {
         Place::Describing => KNOWN.nouns.contains(**known) || KNOWN.adjectives.contains(**known),
         Place::Noun => KNOWN.nouns.contains(**known),
     };
-    let mut found = KNOWN.all.iter().filter(fits).filter(|k| starts_alike(k) && near(k));
+    let mut found = KNOWN.heads.iter().filter(fits).filter(|k| starts_alike(k) && near(k));
     let first = found.next()?;
     let rest: Vec<_> = found.collect();
     // "jumsp" is near "jump" and "jumps": one meaning, so either will do.

@@ -23,6 +23,23 @@ pub fn demote_parts(reading: &mut Reading) {
     }
 }
 
+/// Nouns of things around ("wall", "ball") are such only where one is put there, "put a wall on the left", or taken away:
+/// "the ball jumps" means the thing that was captured, and "against the wall" one that is not there.
+pub fn demote_scenery(reading: &mut Reading) {
+    let tokens = &reading.tokens;
+    for stretch in reading.phrases.split_mut(|p| p.sense == Sense::Separator) {
+        let acts = stretch.iter().any(|p| matches!(p.sense, Sense::Verb(verb) if !matches!(verb, Verb::Move | Verb::Stop)));
+        let denied = stretch.iter().any(|p| matches!(p.sense, Sense::Negation | Sense::Verb(Verb::Stop)));
+        for i in 0..stretch.len() {
+            let told = stretch[..i].iter().rfind(|p| !describes(&p.sense));
+            let new = told.is_some_and(|p| matches!(tokens[p.span.end - 1].word.as_str(), "a" | "an" | "another" | "second"));
+            if matches!(stretch[i].sense, Sense::Scenery(_)) && (acts || !denied && !new) {
+                stretch[i].sense = Sense::Unknown;
+            }
+        }
+    }
+}
+
 /// Reads unknown nouns in the place of an object as `object`, the only one, and notes their tokens as presumed.
 pub fn presume(reading: &mut Reading, object: usize) {
     let ends = |p: &Phrase| p.sense == Sense::Separator;

@@ -35,6 +35,8 @@ pub enum Verb {
     Move,
     /// Is held.
     Pin,
+    /// Is held from above, clear of what is below it.
+    Hang,
     /// Is let go.
     Release,
     /// Is blown at.
@@ -240,6 +242,32 @@ pub enum Part {
     Flowers,
     /// What is below it.
     Pot,
+    /// All that is no part of its own.
+    Rest,
+}
+
+/// What is put around things.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scenery {
+    /// Everything behind a plane.
+    Wall,
+    /// A cube.
+    Block,
+    /// A sphere.
+    Ball,
+    /// An upright rod.
+    Post,
+}
+
+/// What a thing is led along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Course {
+    /// Round and round.
+    Circle,
+    /// A figure of eight.
+    Eight,
+    /// A square.
+    Square,
 }
 
 /// How it starts.
@@ -321,6 +349,14 @@ pub enum Sense {
     Camera,
     /// The ground and the colliders.
     Ground,
+    /// A thing around.
+    Scenery(Scenery),
+    /// Something that things hang from.
+    Overhead,
+    /// What it is led along.
+    Course(Course),
+    /// How an object becomes a solid.
+    Proxy(phystalk::spec::ProxyKind),
     /// A verb.
     Verb(Verb),
     /// More (1) or less (-1) of a property.

@@ -50,7 +50,8 @@ pub fn understand(reading: &mut Reading) -> Result<Turn, String> {
         })
         .collect();
     let rest = |p: &&Phrase| {
-        !matches!(p.sense, Sense::Turn(_) | Sense::Separator | Sense::Filler | Sense::It | Sense::Article | Sense::Preposition(_) | Sense::All)
+        let turn = matches!(p.sense, Sense::Turn(word) if word != TurnWord::OtherWay);
+        !turn && !matches!(p.sense, Sense::Separator | Sense::Filler | Sense::It | Sense::Article | Sense::Preposition(_) | Sense::All)
     };
     let counts: Vec<f64> = reading.phrases.iter().filter_map(|p| count(&p.sense)).collect();
     let others = reading.phrases.iter().filter(rest).filter(|p| count(&p.sense).is_none() && !matches!(p.sense, Sense::Version(_))).count();

@@ -68,6 +68,7 @@ fn dimension(dimension: Dimension) -> &'static str {
         Dimension::Mass => "a mass follows from the density, \"density 500 kg/m³\"",
         Dimension::FrameRate => "\"at 100 fps\" is the frames a second",
         Dimension::Percent => "it goes with more and less, \"20 % softer\"",
+        Dimension::Strange => "what it is a number of is not known: \"30 cm\", \"2 m/s\", \"10 kPa\", \"500 kg/m³\" are",
         Dimension::Times | Dimension::Plain => "a number has its unit, \"jump 30 cm\", \"push it at 2 m/s\", or says how much, \"twice as stiff\"",
     }
 }

@@ -31,7 +31,7 @@ pub struct Pin {
     /// Points `[t, dx, dy, dz]` that it takes its part along, straight from one to the next: seconds, then metres
     /// from where it began. It starts from there at `from_s`, and stands still after the last.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = limits::PATH))]
+    #[schemars(length(max = limits::PIN_PATH))]
     pub path: Vec<[f64; 4]>,
 }
 

@@ -19,6 +19,8 @@ pub const ORBIT_DEG_S: f64 = 45.0;
 /// "Move the camera to the left" and nothing more, degrees about the target.
 pub const STEP_DEG: f64 = 30.0;
 
+/// Height of the film that a focal length goes with: 24 mm, of 36 mm by 24 mm.
+const FILM_M: f64 = 0.024;
 /// Share of the half-picture that what moves may fill.
 const FILL: f64 = 0.95;
 /// How far a way is followed, in longest sides of the object.
@@ -219,7 +221,13 @@ fn distance(clause: &mut Clause, around: &mut Around, said: &mut Vec<String>) {
 /// "wider", "field of view 60 degrees".
 fn field_of_view(clause: &mut Clause, camera: &mut Camera, said: &mut Vec<String>) {
     let Some(scale) = clause.take_scale(&[Property::FieldOfView]) else { return };
-    let given = clause.take_measure(Dimension::Angle).map(|(a, _)| a.to_degrees()).or_else(|| clause.take_measure(Dimension::Plain).map(|(v, _)| v));
+    // A lens is told by its focal length.
+    let lens = |focal_m: f64| 2.0 * (FILM_M / 2.0 / focal_m.max(1e-4)).atan().to_degrees();
+    let given = clause
+        .take_measure(Dimension::Angle)
+        .map(|(a, _)| a.to_degrees())
+        .or_else(|| clause.take_measure(Dimension::Length).map(|(l, _)| lens(l)))
+        .or_else(|| clause.take_measure(Dimension::Plain).map(|(v, _)| v));
     if given.is_none() && !scale.asked {
         return;
     }

@@ -3,7 +3,7 @@
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
 use super::super::say;
-use super::super::sense::Fate;
+use super::super::sense::{Fate, Property};
 use super::parts;
 use super::stuff::{become_stuff, freezes};
 use super::when::When;
@@ -11,6 +11,8 @@ use phystalk::spec::{Activation, Elastic, Liquid, Material, Muscle, Sand, Wave, 
 
 /// Time in which a melt of any size sinks together: its viscosity is its weight over its foot times this.
 const MELT_S: f64 = 0.2;
+/// Power of a pace that viscosity goes with, so that "slowly" is seen.
+const PACE: f64 = 3.0;
 /// How hard a thing that pulses pulls, as a share of its stiffness, and how long a pulse takes.
 const PULSE: (f64, f64) = (0.2, 1.0);
 
@@ -19,6 +21,8 @@ pub fn understand(fate: Fate, clause: &mut Clause, draft: &mut Draft) -> Result<
     let part = parts::take(clause);
     let objects = draft.subjects(clause)?;
     let when = When::take(clause, draft, objects[0])?;
+    // "Melts slowly" is a thick melt.
+    let pace = if fate == Fate::Melt { clause.take_scale(&[Property::Speed]).map_or(1.0, |s| s.ratio) } else { 1.0 };
     for object in objects {
         let owner = parts::owner(draft, object, part);
         let name = draft.name(object);
@@ -30,7 +34,7 @@ pub fn understand(fate: Fate, clause: &mut Clause, draft: &mut Draft) -> Result<
             }
             Fate::Melt => {
                 let weight_pa = density_kg_m3 * 9.81 * draft.facts(object).height_m();
-                let viscosity_pa_s = say::tidy((weight_pa * MELT_S).clamp(1.0, 1e5));
+                let viscosity_pa_s = say::tidy((weight_pa * MELT_S * pace.powf(-PACE)).clamp(1.0, 1e5));
                 let melt = Liquid { density_kg_m3, viscosity_pa_s, surface_tension_n_m: 0.05, ..Liquid::default() };
                 become_stuff(draft, &owner, when, "a melt of itself", Material::Liquid(melt), "");
             }

@@ -40,11 +40,15 @@ pub fn understand(field: Field, clause: &mut Clause, draft: &mut Draft) -> Resul
     let at_s = clause.take_at();
     // A blast is over at once: "for 2 s" is how long the run lasts.
     let span = if field == Field::Explode { (at_s.unwrap_or(0.0), Until::End) } else { lasts(clause, at_s)? };
+    let aimed = matches!(field, Field::Swirl | Field::Motor | Field::Sway | Field::Shake);
+    if !aimed && clause.has(|s| matches!(s, Sense::View(_))) && !clause.has(|s| *s == Sense::Verb(Verb::Look)) {
+        return Err("that has no side that it comes from; \"push it from below\" and \"wind from the left\" have".to_owned());
+    }
     let ask = Ask {
         speed: clause.take_measure(Dimension::Speed).map(|(v, _)| v),
         rate: clause.take_measure(Dimension::AngularSpeed).map(|(w, _)| w),
         acceleration: clause.take_measure(Dimension::Acceleration).map(|(a, _)| a),
-        directions: clause.take_directions(),
+        directions: if aimed { clause.take_directions() } else { Vec::new() },
         strength: strength(Verb::Field(field), clause).0,
     };
     for &object in &objects {

@@ -7,7 +7,7 @@ use super::super::say;
 use super::super::sense::{Pose, Sense, Verb};
 use super::parts::{self, Portion};
 use super::when::When;
-use phystalk::spec::{Event, Pin, Region, Until};
+use phystalk::spec::{Event, Force, Pin, Region, Until};
 
 /// "hold the base", "pin the top from 0.2 s to 1 s".
 pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
@@ -84,9 +84,13 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     }
     let objects = draft.subjects(clause)?;
     clause.take_directions();
-    let at_s = clause.take_at();
+    let at_s = clause.take_at().map(say::tidy);
     for &object in &objects {
         let name = draft.name(object);
+        if let (Some(at_s), Some(verb)) = (at_s, verb) {
+            end(verb, at_s, draft, &name)?;
+            continue;
+        }
         let said = match verb {
             Some(Verb::Jump | Verb::Throw | Verb::Somersault) => {
                 draft.object(object).velocity_m_s[2] = 0.0;
@@ -100,12 +104,11 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
                 "is not pushed"
             }
             Some(Verb::Pull | Verb::Blow) => {
-                let stem = if verb == Some(Verb::Blow) { "wind" } else { "" };
-                draft.spec.forces.retain(|f| f.object != name || !f.name.starts_with(stem));
+                draft.spec.forces.retain(|f| f.object != name || !f.name.starts_with(stem(verb.unwrap_or(Verb::Pull))));
                 "is pulled by nothing"
             }
             Some(Verb::Field(field)) => {
-                draft.spec.forces.retain(|f| f.object != name || !f.name.starts_with(super::fields::stem(field)));
+                draft.spec.forces.retain(|f| f.object != name || !f.name.starts_with(stem(Verb::Field(field))));
                 "is free of that"
             }
             Some(Verb::Spin | Verb::Roll) => {
@@ -120,12 +123,12 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
                 draft.set_gap_m(object, 0.0);
                 "starts on what is below it"
             }
-            Some(Verb::Pin) => {
+            Some(Verb::Pin | Verb::Hang) => {
                 draft.spec.pins.retain(|p| p.object != name);
                 "is held by nothing"
             }
-            _ if at_s.is_some() => {
-                let at_s = say::tidy(at_s.unwrap_or_default());
+            None if at_s.is_some() => {
+                let at_s = at_s.unwrap_or_default();
                 let event = draft.free_name("stop", |spec, name| spec.events.iter().any(|e| e.name == name));
                 draft.spec.events.push(Event { velocity_m_s: Some([0.0; 3]), ..Event::at(&event, &name, at_s) });
                 "is stopped"
@@ -138,6 +141,50 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
         };
         let at = at_s.map_or(String::new(), |at| format!(" at {}", say::seconds(at)));
         draft.gloss.push(format!("{name} {said}{at}"));
+    }
+    Ok(())
+}
+
+/// What the forces are called that a verb makes; a pull is any.
+fn stem(verb: Verb) -> &'static str {
+    match verb {
+        Verb::Blow => "wind",
+        Verb::Field(field) => super::fields::stem(field),
+        _ => "",
+    }
+}
+
+/// "stop the wind at 1 s": what lasts ends then. Of what is over at once there is nothing to end.
+fn end(verb: Verb, at_s: f64, draft: &mut Draft, name: &str) -> Result<(), Refusal> {
+    match verb {
+        Verb::Pull | Verb::Blow | Verb::Field(_) => {
+            let lasts = |f: &&mut Force| f.object == name && f.name.starts_with(stem(verb)) && f.from_s < at_s;
+            let mut ended = Vec::new();
+            for force in draft.spec.forces.iter_mut().filter(lasts) {
+                force.to_s = Until::Time(at_s);
+                ended.push(force.name.clone());
+            }
+            if ended.is_empty() {
+                return Err(format!("nothing like that acts on {name} before {}", say::seconds(at_s)));
+            }
+            draft.gloss.push(format!("{} of {name} ends at {}", say::list(&ended), say::seconds(at_s)));
+        }
+        Verb::Pin => {
+            for pin in draft.spec.pins.iter_mut().filter(|p| p.object == name && p.from_s < at_s) {
+                pin.to_s = Until::Time(at_s);
+            }
+            draft.gloss.push(format!("{name} is let go at {}", say::seconds(at_s)));
+        }
+        Verb::Rest | Verb::Push(_) | Verb::Move | Verb::Fall => {
+            let event = draft.free_name("stop", |spec, name| spec.events.iter().any(|e| e.name == name));
+            draft.spec.events.push(Event { velocity_m_s: Some([0.0; 3]), ..Event::at(&event, name, at_s) });
+            draft.gloss.push(format!("{name} is stopped at {}", say::seconds(at_s)));
+        }
+        _ => {
+            return Err(
+                "at a time winds, pulls, fields and holds end, and \"stop it at 1 s\" takes its speed; that one cannot be ended alone".to_owned()
+            );
+        }
     }
     Ok(())
 }

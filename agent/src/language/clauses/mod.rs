@@ -3,6 +3,7 @@
 pub mod adjust;
 pub mod amounts;
 pub mod camera;
+pub mod course;
 pub mod fate;
 pub mod fields;
 pub mod hold;
@@ -10,6 +11,7 @@ pub mod motion;
 pub mod pace;
 pub mod parts;
 pub mod place;
+pub mod scenery;
 pub mod stuff;
 pub mod turns;
 pub mod when;
@@ -17,7 +19,8 @@ pub mod world;
 
 use super::clause::Clause;
 use super::draft::{Draft, Refusal};
-use super::sense::{Sense, Unbuilt, Verb};
+use super::sense::{Field, Preposition, Sense, Unbuilt, Verb};
+use phystalk::spec::presets;
 
 /// Understands one clause. What it changed stands in the draft; what it did not take is left in the clause.
 pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
@@ -33,7 +36,17 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     if let Some(name) = clause.take_before(&Sense::Ground, stuff) {
         draft.gloss.push(format!("that the ground is of {name} is not heeded: \"slippery\" and \"bouncier\" set its friction and its restitution"));
     }
+    refuse_places(clause, draft)?;
     world::understand(clause, draft);
+    if scenery::remove(clause, draft)? {
+        return Ok(());
+    }
+    if scenery::is_put(clause) {
+        return scenery::put(clause, draft);
+    }
+    if let Some(course) = clause.take(|s| if let Sense::Course(course) = s { Some(*course) } else { None }) {
+        return course::lead(course, clause, draft);
+    }
     if denied(clause)? {
         return hold::cancel(clause, draft);
     }
@@ -58,6 +71,9 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     if let Some(name) = material {
         stuff::material(name, clause, draft)?;
     }
+    if let Some(proxy) = clause.take(|s| if let Sense::Proxy(proxy) = s { Some(*proxy) } else { None }) {
+        stuff::proxy(proxy, clause, draft)?;
+    }
     verbs(clause, draft)?;
     stuff::solve_as(clause, draft)?;
     if !place::take_rise(clause, draft)? {
@@ -75,6 +91,32 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     Ok(())
 }
 
+/// Refuses what would fill a place: ice to be made of, and water to fall into, of which there is none here.
+fn refuse_places(clause: &Clause, draft: &Draft) -> Result<(), Refusal> {
+    let phrases = clause.phrases();
+    let before = |i: usize| phrases[..i].iter().rfind(|p| !matches!(p.sense, Sense::Article | Sense::Quality(..) | Sense::Filler)).map(|p| &p.sense);
+    let moved =
+        phrases.iter().any(|p| matches!(p.sense, Sense::Verb(Verb::Drop | Verb::Fall | Verb::Throw | Verb::Push(_) | Verb::Pull | Verb::Lift)));
+    for (i, phrase) in phrases.iter().enumerate() {
+        let words = draft.words(phrase.span.clone());
+        match (&phrase.sense, before(i)) {
+            (Sense::Surface(_), Some(Sense::Preposition(Preposition::Into | Preposition::Of))) => {
+                return Err(format!(
+                    "{words} is a surface, not yet a material: \"on {words}\"; \"freeze it\" makes a solid of the shape that it has"
+                ));
+            }
+            (Sense::Material(name), Some(Sense::Preposition(Preposition::Into | Preposition::In))) if moved => {
+                let kind = presets::material(name).map(|p| p.material.kind());
+                if kind.is_some_and(|kind| !matches!(kind, "elastic" | "rigid" | "plastic" | "muscle")) {
+                    return Err(format!("there is no {words} here that it could go into; \"turn it into {words}\" makes it of {words}"));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
 /// The verbs, in their order.
 fn verbs(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     while let Some(verb) = next_verb(clause) {
@@ -87,9 +129,13 @@ fn verbs(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
             Verb::Move => place::shift(clause, draft)?,
             Verb::Turn | Verb::Tilt => place::turn(verb, clause, draft)?,
             Verb::Reset => place::reset(clause, draft)?,
+            Verb::Pin if clause.has(|s| *s == Sense::Verb(Verb::Field(Field::Spring))) => {}
             Verb::Pin => hold::pin(clause, draft)?,
+            Verb::Hang => course::hang(clause, draft)?,
             Verb::Release => hold::release(clause, draft)?,
             Verb::Rest | Verb::Stop => hold::cancel(clause, draft)?,
+            // "Sway in the wind" is what wind does.
+            Verb::Field(Field::Sway | Field::Shake) if clause.phrases().iter().any(|p| p.sense == Sense::Verb(Verb::Blow)) => {}
             Verb::Field(field) => fields::understand(field, clause, draft)?,
             Verb::Change(fate) => fate::understand(fate, clause, draft)?,
             _ => motion::understand(verb, clause, draft)?,

@@ -28,6 +28,8 @@ pub const PULL_M_S2: f64 = 3.0;
 
 /// Reads one verb of motion with all that belongs to it.
 pub fn understand(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    // "The wind blows" says it twice.
+    while verb == Verb::Blow && clause.take_verb(|v| v == Verb::Blow).is_some() {}
     let objects = draft.subjects(clause)?;
     let when = When::take(clause, draft, objects[0])?;
     match verb {
@@ -203,26 +205,40 @@ fn throw(clause: &mut Clause, draft: &mut Draft, objects: &[usize], when: When) 
     let elevation = clause.take_measure(Dimension::Angle).map(|(a, _)| a);
     let mut directions = clause.take_directions();
     let (strength, _) = strength(Verb::Throw, clause);
-    let up = directions.contains(&Direction::Up);
-    directions.retain(|d| *d != Direction::Up);
+    let (up, down) = (directions.contains(&Direction::Up), directions.contains(&Direction::Down));
+    if up && down {
+        return Err("those directions cancel out".to_owned());
+    }
+    directions.retain(|d| !matches!(d, Direction::Up | Direction::Down));
     let straight_up = up && directions.is_empty();
-    let assumed = if directions.is_empty() && !up { " (no direction said)" } else { "" };
+    let straight_down = down && directions.is_empty();
+    let assumed = if directions.is_empty() && !up && !down { " (no direction said)" } else { "" };
     if directions.is_empty() {
         directions.push(Direction::Forward);
     }
     let gravity = draft.gravity_for_heights_m_s2();
-    let elevation = if straight_up { TAU / 4.0 } else { elevation.unwrap_or(TAU / 8.0) };
+    let elevation = match elevation.unwrap_or(TAU / 8.0) {
+        _ if straight_up => TAU / 4.0,
+        _ if straight_down => -TAU / 4.0,
+        elevation if down => -elevation,
+        elevation => elevation,
+    };
     for &object in objects {
         let heading = draft.frame(object).heading(&directions).ok_or("those directions cancel out")?;
         let usual = THROW_M_S * draft.size_m(object).sqrt() * strength;
         let speed = match (speed, length) {
             (Some(speed), _) => speed,
             (None, Some((rise, _))) if high || straight_up => (2.0 * gravity * rise).sqrt() / elevation.sin().max(0.05),
+            (None, Some(_)) if down => return Err("a throw that goes down has a speed, \"throw it down at 3 m/s\"".to_owned()),
             (None, Some((range, _))) => (gravity * range / (2.0 * elevation).sin().max(0.05)).sqrt(),
             (None, None) => usual,
         };
         let velocity = speed * (elevation.cos() * heading.unit.with_z(0.0).normalize_or_zero() + elevation.sin() * DVec3::Z);
-        let way = if straight_up { "up".to_owned() } else { format!("{}{assumed} and up at {}°", heading.said, say::short(elevation.to_degrees())) };
+        let way = match (straight_up, straight_down) {
+            (true, _) => "up".to_owned(),
+            (_, true) => "down".to_owned(),
+            _ => format!("{}{assumed} and {} at {}°", heading.said, if down { "down" } else { "up" }, say::short(elevation.abs().to_degrees())),
+        };
         let said = format!("{} is thrown {way}: {}", draft.name(object), say::speed(speed));
         match when {
             When::At(_) | When::Impact => {
@@ -235,7 +251,7 @@ fn throw(clause: &mut Clause, draft: &mut Draft, objects: &[usize], when: When) 
             }
         }
     }
-    draft.aloft = true;
+    draft.aloft |= !down;
     Ok(())
 }
 

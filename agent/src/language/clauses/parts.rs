@@ -68,6 +68,10 @@ pub fn owners(clause: &mut Clause, draft: &mut Draft) -> Result<Vec<Owner>, Refu
 pub fn owner(draft: &mut Draft, object: usize, part: Option<Part>) -> Owner {
     let name = draft.name(object);
     let Some(part) = part else { return Owner { object, part: None, said: name } };
+    // The parts have what is theirs already.
+    if part == Part::Rest {
+        return Owner { object, part: None, said: format!("the rest of {name}") };
+    }
     let mut portion = portion(draft, object, part);
     // A twentieth is enough to hold it by, and too little to be of other stuff.
     (portion.region, portion.said) = match part {
@@ -126,6 +130,7 @@ pub fn portion(draft: &Draft, object: usize, part: Part) -> Portion {
         Part::BackHalf => ("back-half", side(Direction::Backward), "the back half", None),
         Part::Flowers => ("flowers", Region::Above(seam), "flowers", chosen("above", "flowers are the upper")),
         Part::Pot => ("pot", Region::Below(seam), "pot", chosen("below", "pot is the lower")),
+        Part::Rest => ("rest", Region::Above(0.0), "all", None),
     };
     Portion { stem, region, said, chosen }
 }

@@ -8,7 +8,7 @@ use super::super::sense::{Property, Sense};
 use super::adjust::{comparative, is_light};
 use super::parts::{self, Owner};
 use super::when::{self, When};
-use phystalk::spec::{Auto, Event, LiquidSolver, Material, limits, presets};
+use phystalk::spec::{Auto, Event, LiquidSolver, Material, ProxyKind, limits, presets};
 
 /// Stiffness taken for "softer" where the automatic one is not known: before the first run of a scene.
 pub const YOUNG_BEFORE_RUN_PA: f64 = 2e5;
@@ -206,6 +206,20 @@ fn resemble(draft: &mut Draft, owner: &Owner, name: &str, preset: &Material, sca
     let young = say::tidy(young * ratio);
     *young_mut(draft, owner)? = Auto::Value(young);
     draft.gloss.push(format!("{} has {share}the stiffness of {name}: Young's modulus {}", owner.said, say::pressure(young)));
+    Ok(())
+}
+
+/// "use the convex hull": what solid is made of the Gaussians.
+pub fn proxy(proxy: ProxyKind, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    for object in draft.subjects(clause)? {
+        draft.object(object).proxy = proxy;
+        let said = match proxy {
+            ProxyKind::Hull => "its convex hull",
+            ProxyKind::Voxel => "the shape of its Gaussians, hollows and all",
+        };
+        let line = format!("{} is as solid as {said}", draft.name(object));
+        draft.gloss.push(line);
+    }
     Ok(())
 }
 

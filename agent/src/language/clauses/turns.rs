@@ -6,7 +6,7 @@ use super::super::numbers::Dimension;
 use super::super::say;
 use super::super::sense::{Sense, TurnWord};
 use glam::DVec3;
-use phystalk::spec::{Auto, Event, Object, Spec};
+use phystalk::spec::{Auto, Event, Force, Object, Spec};
 
 const NOTHING: &str = "there is no turn before this one that it could speak of";
 
@@ -55,23 +55,28 @@ fn follow(draft: &mut Draft, how: Follow) -> Result<(), Refusal> {
     let before: &Spec = draft.context.previous_spec.ok_or(NOTHING)?;
     let now: &Spec = draft.context.spec;
     let mut said = Vec::new();
-    for index in 0..now.objects.len() {
-        if let Some(was) = before.objects.iter().find(|o| o.name == now.objects[index].name) {
-            object(draft, index, &was.clone(), how, &mut said);
+    for thing in &now.objects {
+        let index = draft.spec.objects.iter().position(|o| o.name == thing.name);
+        if let (Some(index), Some(was)) = (index, before.objects.iter().find(|o| o.name == thing.name)) {
+            object(draft, index, thing, was, how, &mut said);
         }
     }
-    for (i, event) in now.events.iter().enumerate() {
+    for event in &now.events {
         let changed = before.events.iter().find(|e| e.name == event.name) != Some(event);
-        if changed && let Some(push) = event.push_m_s {
-            draft.spec.events[i].push_m_s = Some(along(DVec3::ZERO, DVec3::from_array(push), how, true));
+        if changed
+            && let Some(push) = event.push_m_s
+            && let Some(event) = event_again(draft, event)
+        {
+            event.push_m_s = Some(along(DVec3::ZERO, DVec3::from_array(push), how, true));
             said.push(format!("{} of {}", event.name, event.object));
         }
     }
-    for (i, force) in now.forces.iter().enumerate() {
-        if before.forces.iter().find(|f| f.name == force.name) != Some(force) {
+    for force in &now.forces {
+        let changed = before.forces.iter().find(|f| f.name == force.name) != Some(force);
+        if changed && let Some(again) = force_again(draft, force) {
             match force.constant_m_s2() {
-                Some(a) => draft.spec.forces[i].set_constant(along(DVec3::ZERO, DVec3::from_array(a), how, true)),
-                None => draft.spec.forces[i].scale(along(DVec3::ZERO, DVec3::X, how, true)[0]),
+                Some(a) => again.set_constant(along(DVec3::ZERO, DVec3::from_array(a), how, true)),
+                None => again.scale(along(DVec3::ZERO, DVec3::X, how, true)[0]),
             }
             said.push(format!("{} of {}", force.name, force.object));
         }
@@ -101,8 +106,24 @@ fn follow(draft: &mut Draft, how: Follow) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn object(draft: &mut Draft, index: usize, was: &Object, how: Follow, said: &mut Vec<String>) {
-    let now = draft.context.spec.objects[index].clone();
+/// An event of the newest turn in the spec that is being made. Where that turn was taken back it comes again; where
+/// this request removed it it is gone.
+fn event_again<'a>(draft: &'a mut Draft, event: &Event) -> Option<&'a mut Event> {
+    if draft.undone && !draft.spec.events.iter().any(|e| e.name == event.name) {
+        draft.spec.events.push(event.clone());
+    }
+    draft.spec.events.iter_mut().find(|e| e.name == event.name)
+}
+
+/// The same of a force.
+fn force_again<'a>(draft: &'a mut Draft, force: &Force) -> Option<&'a mut Force> {
+    if draft.undone && !draft.spec.forces.iter().any(|f| f.name == force.name) {
+        draft.spec.forces.push(force.clone());
+    }
+    draft.spec.forces.iter_mut().find(|f| f.name == force.name)
+}
+
+fn object(draft: &mut Draft, index: usize, now: &Object, was: &Object, how: Follow, said: &mut Vec<String>) {
     let name = now.name.clone();
     let mut vector = |was: [f64; 3], is: [f64; 3], rate: bool, what: &str| -> [f64; 3] {
         if was == is {
@@ -179,15 +200,15 @@ pub fn amend(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
     for (index, thing) in now.objects.iter().enumerate() {
         let frame = draft.frame(index);
         let newer = |e: &Event| e.object == thing.name && before.events.iter().find(|b| b.name == e.name) != Some(e);
-        let event = now.events.iter().position(|e| newer(e) && e.push_m_s.is_some());
+        let event = now.events.iter().find(|e| newer(e) && e.push_m_s.is_some());
         let was = before.objects.iter().find(|o| o.name == thing.name).map_or(DVec3::ZERO, |o| DVec3::from_array(o.velocity_m_s));
         let velocity = DVec3::from_array(thing.velocity_m_s);
         let changed = (velocity - was).try_normalize().unwrap_or(DVec3::ZERO);
         let old = match event {
-            Some(i) => DVec3::from_array(now.events[i].push_m_s.unwrap_or_default()),
+            Some(event) => DVec3::from_array(event.push_m_s.unwrap_or_default()),
             None => velocity.dot(changed) * changed,
         };
-        if old == DVec3::ZERO {
+        if old == DVec3::ZERO || event.is_some_and(|e| !draft.undone && !draft.spec.events.iter().any(|d| d.name == e.name)) {
             continue;
         }
         let directions = clause.take_directions();
@@ -196,8 +217,8 @@ pub fn amend(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
         let new = heading.as_ref().map_or(old.normalize(), |h| h.unit) * speed;
         let way = heading.map_or(String::new(), |h| format!(" {}", h.said));
         let line = match event {
-            Some(i) => {
-                let event = &mut draft.spec.events[i];
+            Some(event) => {
+                let Some(event) = event_again(draft, event) else { continue };
                 event.push_m_s = Some(say::tidy3(new));
                 if let Some(at_s) = clause.take_at() {
                     (event.at_s, event.when) = (Some(say::tidy(at_s)), None);

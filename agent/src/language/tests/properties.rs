@@ -28,8 +28,9 @@ proptest! {
     /// No text panics, the same text gives the same reply, the words reported are the text's own, and the
     /// spec takes the edits.
     #[test]
-    fn any_request(text in request()) {
-        let stage = Stage::vase().with_table().then("make it jump").then("push it left");
+    fn any_request(text in request(), undone in any::<bool>()) {
+        let text = if undone { format!("undo that and {text}") } else { text };
+        let stage = Stage::vase().with_table().then("make it jump").then("push it left at 0.5 s and wind from the left");
         let reply = stage.ask(&text);
         prop_assert_eq!(&reply, &stage.ask(&text));
         for word in reported(&reply) {

@@ -51,6 +51,19 @@ fn a_jump_is_the_speed_that_reaches_its_height() {
 }
 
 #[test]
+fn a_course_is_led_by_the_base_and_comes_back() {
+    let stage = Stage::vase().then("carry it in a circle of 30 cm for 4 s");
+    let pin = &stage.spec.pins[0];
+    let round = |i: usize| pin.path[i].map(|x| (x * 1e3).round() / 1e3);
+    assert_eq!((pin.name.as_str(), pin.path.len()), ("course", 64));
+    assert_eq!((round(15), round(31), round(63)), ([1.0, 0.0, 0.6, 0.0], [2.0, 0.0, 0.0, 0.0], [4.0, 0.0, 0.0, 0.0]));
+    // Another course takes its place.
+    let stage = stage.then("carry the top along an eight");
+    assert_eq!(stage.spec.pins.len(), 1);
+    assert_eq!(stage.spec.pins[0].region, phystalk::spec::Region::Above(0.95));
+}
+
+#[test]
 fn amounts_are_said_with_units() {
     let stage = Stage::vase();
     assert_eq!(gloss(&stage.ask("jump 30 cm")), "vase jumps: 2.43 m/s up, enough for 0.30 m");
