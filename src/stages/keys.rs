@@ -53,12 +53,15 @@ fn device(gpu: &Gpu) -> serde_json::Value {
     json!([gpu.info.name, format!("{:?}", gpu.info.backend), gpu.info.driver, gpu.info.driver_info])
 }
 
-/// What a prestress depends on: the solid, what it is made of, what it stands on, and gravity.
+/// What a prestress depends on: the solid, what it is made of, what it stands on, gravity, and how long a frame is, which
+/// bounds how stiff a thing may be.
 pub(super) fn prestress(spec: &Spec, keys: &StillKeys, resolved: &Resolved, gpu: &Gpu) -> String {
     let bodies: Vec<_> = spec.objects.iter().map(|o| (&o.material, &o.parts, o.rest)).collect();
     let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s <= 0.0).map(|p| (&p.object, &p.region)).collect();
-    hash("prestress", &json!([solver::VERSION, *SOLVER_TEXT, device(gpu), keys.proxy, resolved.cell_m, resolved.ground_m, bodies, pins]))
-        + &hash("support", &json!([spec.world, spec.colliders]))
+    hash(
+        "prestress",
+        &json!([solver::VERSION, *SOLVER_TEXT, device(gpu), keys.proxy, resolved.cell_m, resolved.ground_m, spec.time.fps, bodies, pins]),
+    ) + &hash("support", &json!([spec.world, spec.colliders]))
 }
 
 /// What motion until `to_s` depends on, and nothing that the spec says of later times.
@@ -126,4 +129,28 @@ static PICTURE_TEXT: LazyLock<String> = LazyLock::new(|| text_hash(&(skin::shade
 
 fn text_hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spec::Camera;
+
+    #[test]
+    fn a_prestress_of_stiff_matter_is_of_one_length_of_frames() {
+        // Shorter frames carry less stiffness, and the kept state holds what was carried.
+        let gpu = Gpu::shared_for_tests().unwrap();
+        let camera = Camera { eye_m: [0.0, -3.0, 1.0], target_m: [0.0; 3], fov_deg: 40.0, orbit_deg_s: 0.0 };
+        let resolved =
+            Resolved { duration_s: 2.0, frames: 101, ground_m: 0.0, cell_m: 0.02, size: [640, 360], camera, reframed: false, leaves: false };
+        let key = |spec: &Spec| prestress(spec, &still(spec, "scene".to_owned(), &resolved), &resolved, &gpu);
+        let fifty = Spec::of_scene("vase.splat");
+        let mut other = fifty.clone();
+        other.time.fps = 240;
+        assert_ne!(key(&fifty), key(&other));
+        // What comes after the start has no part in it.
+        let mut later = fifty.clone();
+        later.events.push(Event { push_m_s: Some([1.0, 0.0, 0.0]), ..Event::at("push", "vase", 1.2) });
+        assert_eq!(key(&fifty), key(&later));
+    }
 }
