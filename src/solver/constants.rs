@@ -160,7 +160,7 @@ pub const FILM_RESOLVED: f32 = 0.6;
 /// Time in which the Gaussians of a liquid go back to their captured shape, seconds.
 pub const LIQUID_SHOWN_S: f32 = 0.25;
 /// Rigid bodies of one scene, at most.
-pub const RIGID_BODIES: u32 = 128;
+pub const RIGID_BODIES: u32 = crate::spec::limits::RIGID;
 /// Threads a workgroup of the passes over bodies.
 pub const RIGID_LANES: u32 = 64;
 /// Points of a body's surface, at most.

@@ -17,6 +17,7 @@ use super::transfer::Transfers;
 use super::types::{Particles, Placement, Settings, Softened, SolverError};
 use super::watch::{Control, Watch};
 use crate::gpu::{Gpu, Recording, Tier};
+use crate::spec::limits;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
 
@@ -329,8 +330,8 @@ fn check(settings: &Settings) -> Result<(), SolverError> {
     if !settings.gravity_m_s2.is_finite() {
         return refuse(format!("gravity {}", settings.gravity_m_s2), "finite numbers");
     }
-    if settings.colliders.len() > 126 {
-        return refuse(format!("{} colliders", settings.colliders.len()), "at most 126");
+    if settings.colliders.len() > limits::COLLIDERS as usize {
+        return refuse(format!("{} colliders", settings.colliders.len()), &format!("at most {}", limits::COLLIDERS));
     }
     if !(settings.cfl > 0.0 && settings.cfl <= 0.6) {
         return refuse(format!("a CFL number of {}", settings.cfl), "over 0, at most 0.6");

@@ -10,8 +10,12 @@ pub const FORMAT: u32 = 1;
 pub const SEED: u64 = (1 << 53) - 1;
 /// Objects in one spec.
 pub const OBJECTS: u32 = 64;
-/// Pins, colliders, forces, events and expectations, each.
+/// Pins, forces, events and expectations, each.
 pub const ENTRIES: u32 = 256;
+/// Colliders: with the ground, as many as a mark on the grid tells apart.
+pub const COLLIDERS: u32 = 126;
+/// Rigid objects and rigid parts together, whether they start so or become so.
+pub const RIGID: u32 = 128;
 /// Length of a name.
 pub const NAME: usize = 64;
 /// Scale of a scene.

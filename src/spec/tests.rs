@@ -168,6 +168,28 @@ fn faults_say_path_value_bounds_and_nearest_name() {
 }
 
 #[test]
+fn no_spec_asks_for_more_than_the_solver_holds() {
+    let colliders = |count: u32| {
+        let one = |k: u32| format!("[[collider]]\nname = \"c{k}\"\nshape = {{ sphere = {{ centre_m = [{k}, 0, 0], radius_m = 0.1 }} }}\n");
+        Spec::from_toml(&format!("format = 1\nscene.file = 'x.ply'\n[[object]]\n{}", (0..count).map(one).collect::<String>()))
+    };
+    assert_eq!(colliders(limits::COLLIDERS).unwrap().colliders.len(), 126);
+    assert!(colliders(limits::COLLIDERS + 1).unwrap_err().to_string().contains("126"));
+    // Three objects of rigid parts; the first is a soft one until an event, if any, makes all of it rigid.
+    let pieces = |parts: u32, event: &str| {
+        let part = |k: u32| format!("[[object.part]]\nname = \"p{k}\"\nregion = {{ above = 0.5 }}\nmaterial = {{ kind = \"rigid\" }}\n");
+        let parts: String = (0..parts).map(part).collect();
+        let object = |name: &str, kind: &str| format!("[[object]]\nname = \"{name}\"\nmaterial = {{ kind = \"{kind}\" }}\n{parts}");
+        let [a, b, c] = [object("a", "elastic"), object("b", "rigid"), object("c", "rigid")];
+        Spec::from_toml(&format!("format = 1\nscene.file = 'x.ply'\n{a}{b}{c}{event}"))
+    };
+    let event = "[[event]]\nat_s = 1\nobject = \"a\"\nmaterial = { kind = \"rigid\" }\n";
+    assert!(pieces(42, "").is_ok());
+    assert_eq!(pieces(42, event).unwrap_err().kind, SpecErrorKind::Range);
+    assert!(pieces(43, "").unwrap_err().to_string().contains("131 objects and parts are rigid"));
+}
+
+#[test]
 fn what_comes_later_is_refused_by_name() {
     let faults = [
         refused("[[pin]]", "[[look]]\nobject = \"vase\"\n[[pin]]"),

@@ -29,6 +29,7 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
             region(&part.region, &place)?;
         }
     }
+    bodies(spec)?;
     let objects: Vec<&str> = spec.objects.iter().map(|object| object.name.as_str()).collect();
     for pin in &spec.pins {
         let place = format!("pin.{}", pin.name);
@@ -67,6 +68,28 @@ pub(super) fn spec(spec: &Spec) -> Result<(), SpecError> {
     }
     for expectation in &spec.expectations {
         expect::Condition::parse(&expectation.that)?.refers_to(&objects)?;
+    }
+    Ok(())
+}
+
+/// No more rigid bodies than there may be: objects and parts that start rigid or ever become so, each one at most.
+fn bodies(spec: &Spec) -> Result<(), SpecError> {
+    let rigid = |material: &Material| matches!(material, Material::Rigid(_));
+    let count: usize = spec
+        .objects
+        .iter()
+        .map(|object| {
+            let becomes = |part: Option<&str>| {
+                let of = |event: &&Event| event.object == object.name && (event.part.is_none() || event.part.as_deref() == part);
+                spec.events.iter().filter(of).filter_map(|event| event.material.as_ref()).any(rigid)
+            };
+            let parts = object.parts.iter().filter(|part| rigid(&part.material) || becomes(Some(&part.name))).count();
+            parts + usize::from(rigid(&object.material) || becomes(None))
+        })
+        .sum();
+    if count > limits::RIGID as usize {
+        let message = format!("{count} objects and parts are rigid, or become so");
+        return Err(SpecError::new(SpecErrorKind::Range, "object", message).allowed(format!("at most {}", limits::RIGID)));
     }
     Ok(())
 }

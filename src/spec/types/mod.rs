@@ -60,7 +60,7 @@ pub struct Spec {
     #[serde(default, rename = "pin", skip_serializing_if = "Vec::is_empty")]
     pub pins: Vec<Pin>,
     /// What objects collide with, beside the ground.
-    #[schemars(length(max = limits::ENTRIES))]
+    #[schemars(length(max = limits::COLLIDERS))]
     #[serde(default, rename = "collider", skip_serializing_if = "Vec::is_empty")]
     pub colliders: Vec<Collider>,
     /// Accelerations over a span of time.
