@@ -3,7 +3,8 @@
 
 struct Body {
     centre: vec4<f32>,
-    // The centre as a whole number of quanta, and what is left: its sum of steps loses nothing.
+    // The centre as whole metres, a whole number of quanta beyond them, and what is left: its sum of steps loses nothing.
+    metre: vec4<i32>,
     whole: vec4<i32>,
     // w: how far inside its support the body stood when it was made, 0 or less.
     low: vec4<f32>,

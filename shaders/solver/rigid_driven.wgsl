@@ -1,5 +1,6 @@
 // What fields did to the particles of bodies since they were put in place: momentum and angular momentum
-// of each body, in fixed point of two words, whose sums do not depend on who comes first.
+// of each body, in fixed point of two words, whose sums do not depend on who comes first nor end with the words: what
+// overflows the low one is carried to the high one.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
@@ -9,14 +10,15 @@
 // In the original order: place in the body frame, and the body's number.
 @group(0) @binding(5) var<storage, read> anchors: array<vec4<f32>>;
 // Twelve words a body: high and low of the momentum, high and low of the angular momentum.
-@group(0) @binding(6) var<storage, read_write> driven: array<atomic<i32>>;
+@group(0) @binding(6) var<storage, read_write> driven: array<atomic<u32>>;
 
 fn add(at: u32, value: vec3<f32>) {
     let high = floor(value * (1.0 / DRIVEN_LOW));
-    let low = round(value - high * DRIVEN_LOW);
+    let low = vec3<u32>(round(value - high * DRIVEN_LOW));
     for (var k = 0u; k < 3u; k++) {
-        atomicAdd(&driven[at + k], i32(high[k]));
-        atomicAdd(&driven[at + 3u + k], i32(low[k]));
+        let before = atomicAdd(&driven[at + 3u + k], low[k]);
+        let carry = select(0u, 1u << (32u - DRIVEN_BITS), before + low[k] < before);
+        atomicAdd(&driven[at + k], bitcast<u32>(i32(high[k])) + carry);
     }
 }
 

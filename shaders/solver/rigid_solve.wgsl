@@ -15,7 +15,7 @@
 // Two vec4 a chunk of members: momentum and angular momentum that the grid gives.
 @group(0) @binding(6) var<storage, read> given: array<vec4<f32>>;
 // What fields gave, see rigid_driven.wgsl; left at zero.
-@group(0) @binding(7) var<storage, read_write> driven: array<i32>;
+@group(0) @binding(7) var<storage, read_write> driven: array<u32>;
 var<immediate> substep: Substep;
 
 // Velocity; w: 1 / mass, 0 for what is held.
@@ -214,13 +214,15 @@ fn colour_all() -> u32 {
     return most;
 }
 
-// Takes a sum of two words a coordinate.
+// Takes a sum of two words a coordinate. What the low one holds beyond its bits goes to the high one first, exactly.
 fn take_driven(at: u32) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
     for (var k = 0u; k < 3u; k++) {
-        sum[k] = (f32(driven[at + k]) * DRIVEN_LOW + f32(driven[at + 3u + k])) * DRIVEN_UNIT;
-        driven[at + k] = 0;
-        driven[at + 3u + k] = 0;
+        let low = driven[at + 3u + k];
+        let high = bitcast<i32>(driven[at + k] + (low >> DRIVEN_BITS));
+        sum[k] = (f32(high) * DRIVEN_LOW + f32(low & ((1u << DRIVEN_BITS) - 1u))) * DRIVEN_UNIT;
+        driven[at + k] = 0u;
+        driven[at + 3u + k] = 0u;
     }
     return sum;
 }
@@ -286,11 +288,15 @@ fn travel(b: u32) {
     let late = select(vec3<f32>(0.0), 0.5 * substep.dt_s * acceleration, flies);
     let low = bodies[b].low.xyz + (speed[b].xyz - late) * substep.dt_s;
     let quanta = round(low / RIGID_QUANTUM_M);
-    let whole = bodies[b].whole.xyz + vec3<i32>(quanta);
+    let sum = bodies[b].whole.xyz + vec3<i32>(quanta);
+    let metres = sum >> vec3<u32>(RIGID_QUANTUM_BITS);
+    let whole = sum - (metres << vec3<u32>(RIGID_QUANTUM_BITS));
+    let metre = bodies[b].metre.xyz + metres;
     let rest = low - quanta * RIGID_QUANTUM_M;
+    bodies[b].metre = vec4<i32>(metre, 0);
     bodies[b].whole = vec4<i32>(whole, 0);
     bodies[b].low = vec4<f32>(rest, bodies[b].low.w);
-    bodies[b].centre = vec4<f32>(vec3<f32>(whole) * RIGID_QUANTUM_M + rest, 0.0);
+    bodies[b].centre = vec4<f32>(vec3<f32>(metre) + (vec3<f32>(whole) * RIGID_QUANTUM_M + rest), 0.0);
     let momentum = momentum_now(b);
     let q = bodies[b].turn;
     var omega = spin[b].xyz;

@@ -183,12 +183,16 @@ pub const RIGID_HERTZ: f32 = 60.0;
 pub const RIGID_DAMPING: f32 = 10.0;
 /// No overlap opens faster than this many radii of the body a second.
 pub const RIGID_PUSH_RATE: f32 = 5.0;
-/// What positions of bodies are counted in: a power of two, so that whole numbers of it are exact.
-pub const RIGID_QUANTUM_M: f32 = 1.0 / 1_048_576.0;
+/// What positions of bodies are counted in is 2^-this metres, so that whole numbers of it are exact.
+pub const RIGID_QUANTUM_BITS: u32 = 20;
+/// See [`RIGID_QUANTUM_BITS`].
+pub const RIGID_QUANTUM_M: f32 = 1.0 / (1u32 << RIGID_QUANTUM_BITS) as f32;
 /// What fields give a body is summed in shares of its mass times this speed, m/s.
 pub const DRIVEN_UNIT: f32 = 1.0 / 2_147_483_648.0;
-/// Units in the high word of such a sum: the low words of half a million particles fit one.
-pub const DRIVEN_LOW: f32 = 4096.0;
+/// Bits of what a particle adds to the low word of such a sum.
+pub const DRIVEN_BITS: u32 = 12;
+/// Units in the high word.
+pub const DRIVEN_LOW: f32 = (1u32 << DRIVEN_BITS) as f32;
 /// Longest substep of rigid bodies, seconds.
 pub const RIGID_STEP_S: f64 = 5e-4;
 /// And in units of the time in which the smallest body falls by its own radius.
@@ -301,7 +305,9 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("RIGID_HERTZ", Constant::F32(RIGID_HERTZ)),
         ("RIGID_DAMPING", Constant::F32(RIGID_DAMPING)),
         ("DRIVEN_UNIT", Constant::F32(DRIVEN_UNIT)),
+        ("DRIVEN_BITS", Constant::U32(DRIVEN_BITS)),
         ("DRIVEN_LOW", Constant::F32(DRIVEN_LOW)),
+        ("RIGID_QUANTUM_BITS", Constant::U32(RIGID_QUANTUM_BITS)),
         ("RIGID_QUANTUM_M", Constant::F32(RIGID_QUANTUM_M)),
         ("RIGID_PUSH_RATE", Constant::F32(RIGID_PUSH_RATE)),
     ]

@@ -19,6 +19,7 @@ use std::collections::{BTreeMap, HashMap};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(in crate::solver) struct Body {
     pub centre_m: [f32; 4],
+    pub metre: [i32; 4],
     pub whole: [i32; 4],
     /// w: how far inside its support it stood when it was made, 0 or less.
     pub low_m: [f32; 4],
@@ -30,9 +31,10 @@ pub(in crate::solver) struct Body {
 impl Body {
     /// Puts the centre at a place.
     pub fn put(&mut self, centre_m: Vec3) {
-        let whole = (centre_m / RIGID_QUANTUM_M).round();
-        self.whole = whole.as_ivec3().extend(0).into();
-        self.low_m = (centre_m - whole * RIGID_QUANTUM_M).extend(self.low_m[3]).into();
+        let metre = centre_m.floor();
+        let whole = ((centre_m - metre) / RIGID_QUANTUM_M).round();
+        (self.metre, self.whole) = (metre.as_ivec3().extend(0).into(), whole.as_ivec3().extend(0).into());
+        self.low_m = (centre_m - metre - whole * RIGID_QUANTUM_M).extend(self.low_m[3]).into();
         self.centre_m = centre_m.extend(0.0).into();
     }
 }
@@ -138,12 +140,7 @@ pub(in crate::solver) fn assemble(
 
 /// The bodies whose particles have these places in their frames, wherever they are now: all but how they move.
 pub(in crate::solver) fn build(anchors: Vec<[f32; 4]>, count: usize, states: &[ParticleState], substances: &[Substance], cell_m: f32) -> Assembly {
-    let mut groups = vec![Vec::new(); count];
-    for (i, anchor) in anchors.iter().enumerate() {
-        if let Some(members) = groups.get_mut(anchor[3].to_bits() as usize) {
-            members.push(i);
-        }
-    }
+    let groups = members(&anchors, count);
     let most = (RIGID_FIELD as usize / count).clamp(32 * 32 * 32, 96 * 96 * 96);
     let made: Vec<Made> = groups.par_iter().map(|members| make(states, members, &anchors, substances, most)).collect();
     let mut all = Assembly { anchors, least_m: f32::INFINITY, ..Default::default() };
@@ -160,6 +157,28 @@ pub(in crate::solver) fn build(anchors: Vec<[f32; 4]>, count: usize, states: &[P
         all.fields.push(made.field);
     }
     all
+}
+
+/// The particles of each of `count` bodies, by what anchors them.
+pub(super) fn members(anchors: &[[f32; 4]], count: usize) -> Vec<Vec<usize>> {
+    let mut groups = vec![Vec::new(); count];
+    for (i, anchor) in anchors.iter().enumerate() {
+        if let Some(members) = groups.get_mut(anchor[3].to_bits() as usize) {
+            members.push(i);
+        }
+    }
+    groups
+}
+
+/// Friction and restitution of what some particles are made of: their means by mass.
+pub(super) fn surface(states: &[ParticleState], members: &[usize], substances: &[Substance]) -> (f32, f32) {
+    let (mut mass, mut friction, mut restitution) = (0.0, 0.0, 0.0);
+    for state in members.iter().map(|&i| &states[i]) {
+        let kg = f64::from(state.mass_kg);
+        let (rough, lively) = substances[state.substance()].rigid().unwrap_or_default();
+        (mass, friction, restitution) = (mass + kg, friction + kg * f64::from(rough), restitution + kg * f64::from(lively));
+    }
+    ((friction / mass) as f32, (restitution / mass) as f32)
 }
 
 impl Assembly {
@@ -246,10 +265,7 @@ fn make(states: &[ParticleState], members: &[usize], anchors: &[[f32; 4]], subst
     }
     let field = Field::of(&Cloud { points_m: &points_m, volumes_m3: &volumes_m3, spacing_m: spacing_m(&volumes_m3) }, most);
     let (points, apart_m) = field.surface(RIGID_POINTS as usize);
-    let surface = |pick: fn(&Substance) -> f32| {
-        let sum: f64 = members.iter().map(|&i| f64::from(states[i].mass_kg) * f64::from(pick(&substances[states[i].substance()]))).sum();
-        (sum / mass) as f32
-    };
+    let (friction, restitution) = surface(states, members, substances);
     let shape = Shape {
         inertia: columns(inertia.as_mat3(), mass as f32),
         inverse: columns(inertia.inverse().as_mat3(), 0.0),
@@ -259,8 +275,8 @@ fn make(states: &[ParticleState], members: &[usize], anchors: &[[f32; 4]], subst
         points: points.len() as u32,
         radius_m: points.iter().chain(&points_m).map(|p| p.length()).fold(0.5 * field.voxel_m, f32::max),
         apart_m,
-        friction: surface(|s| s.rigid().map_or(0.0, |r| r.0)),
-        restitution: surface(|s| s.rigid().map_or(0.0, |r| r.1)),
+        friction,
+        restitution,
         object: states[members[0]].object(),
         ..Default::default()
     };

@@ -125,7 +125,7 @@ impl Rigid {
             anchors: gpu.storage_from("solver.rigid.anchors", &all.anchors)?,
             scratch: gpu.storage::<[[f32; 4]; 2]>("solver.rigid.scratch", all.points.len().max(RIGID_POINTS as usize))?,
             given: gpu.storage::<[[f32; 4]; 2]>("solver.rigid.given", all.owners.len().max(1))?,
-            driven: gpu.storage::<[i32; 12]>("solver.rigid.driven", all.bodies.len())?,
+            driven: gpu.storage::<[u32; 12]>("solver.rigid.driven", all.bodies.len())?,
             meeting: if all.owners.is_empty() { None } else { Some(Meeting::new(gpu, all)?) },
         })
     }

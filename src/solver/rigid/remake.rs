@@ -1,5 +1,6 @@
 //! Bodies made anew on the way: by a change of material, or from a checkpoint after one.
 
+use super::body::{self, Shape};
 use super::{Rigid, assemble, build};
 use crate::solver::core::Solver;
 use crate::solver::laws::{Rows, from_rows, rows};
@@ -23,7 +24,13 @@ impl Solver {
 
     /// Makes the bodies of a checkpoint, whose motion is then that of the checkpoint.
     pub(in crate::solver) fn rebuild(&mut self, anchors: Vec<[f32; 4]>, count: usize, states: &[ParticleState]) -> Result<(), SolverError> {
-        let same = |rigid: &Rigid| bytemuck::cast_slice::<_, u32>(&rigid.anchors_host) == bytemuck::cast_slice::<_, u32>(&anchors);
+        // Anchors tell the shape and what hangs on it; of what it is made may have changed before anything moved.
+        let table = &self.laws.substances;
+        let made = |shape: &Shape, members: &[usize]| body::surface(states, members, table) == (shape.friction, shape.restitution);
+        let same = |rigid: &Rigid| {
+            bytemuck::cast_slice::<_, u32>(&rigid.anchors_host) == bytemuck::cast_slice::<_, u32>(&anchors)
+                && rigid.shapes_host.iter().zip(body::members(&anchors, count)).all(|(shape, members)| made(shape, &members))
+        };
         if count == 0 {
             self.rigid = None;
         } else if !self.rigid.as_ref().is_some_and(same) {

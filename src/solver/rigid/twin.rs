@@ -399,10 +399,13 @@ impl World<'_> {
         let late = if m.flies { acceleration * (0.5 * self.dt_s) } else { Vec3::ZERO };
         let low = xyz(&body.low_m) + (m.v - late) * self.dt_s;
         let quanta = (low / RIGID_QUANTUM_M).round();
-        let whole = IVec3::from_slice(&body.whole) + quanta.as_ivec3();
-        body.whole = whole.extend(0).into();
+        let sum = IVec3::from_slice(&body.whole) + quanta.as_ivec3();
+        let a_metre = 1 << RIGID_QUANTUM_BITS;
+        let whole = IVec3::from_array(sum.to_array().map(|q| q.rem_euclid(a_metre)));
+        let metre = IVec3::from_slice(&body.metre) + (sum - whole) / a_metre;
+        (body.metre, body.whole) = (metre.extend(0).into(), whole.extend(0).into());
         body.low_m = (low - quanta * RIGID_QUANTUM_M).extend(body.low_m[3]).into();
-        body.centre_m = (whole.as_vec3() * RIGID_QUANTUM_M + xyz(&body.low_m)).extend(0.0).into();
+        body.centre_m = (metre.as_vec3() + (whole.as_vec3() * RIGID_QUANTUM_M + xyz(&body.low_m))).extend(0.0).into();
         let momentum = momentum(m, shape, m.old_turn);
         let mut omega = m.omega;
         if m.lightness != 0.0 {

@@ -1,6 +1,6 @@
 //! Bodies on a device against formulas.
 
-use super::{CELL_M, G, advance, bodies_of, centre, floating, incline, moving, solver, velocity};
+use super::{Body, CELL_M, G, Placement, advance, bodies_of, centre, floating, incline, moving, solver, velocity};
 use crate::solver::validate::{ball, block, joined, rigid_body as rigid};
 use crate::solver::{Collider, Field, Particles, PinRegion, Settings};
 use crate::spec::expression::{Kind, Program, parse};
@@ -51,6 +51,29 @@ fn a_tumbling_box_follows_eulers_equations() {
     for (s, p) in solver.states().expect("states").iter().zip(&particles.position_m) {
         let place = Quat::from_array(end.turn) * (*p - centre(&start)) + centre(&end);
         assert!((s.position_m - place).length() < 1e-5 && (s.f().determinant() - 1.0).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn a_body_flies_on_wherever_it_is() {
+    // Half a metre in a run past 2048 m, and creeping where f32 no longer sees the steps.
+    let particles = rigid(block(Vec3::ZERO, Vec3::splat(0.1), 0.025, 1e5, 0.3), 0.3, 0.0);
+    for (from_m, velocity_m_s) in [(Vec3::new(2047.9, -2048.1, 3000.0), Vec3::new(2.0, -2.0, 1.0)), (Vec3::new(3000.0, 0.0, -9e4), Vec3::splat(1e-3))]
+    {
+        let mut solver = solver(floating(), &particles);
+        let placement = Placement { offset_m: from_m, ..moving(velocity_m_s, Vec3::ZERO, Vec3::splat(0.05)) };
+        solver.place(0, &placement).expect("a placement");
+        let place = |body: &Body| {
+            let part = |k: usize| f64::from(body.metre[k]) + f64::from(body.whole[k]) / 1_048_576.0 + f64::from(body.low_m[k]);
+            DVec3::new(part(0), part(1), part(2))
+        };
+        let start = bodies_of(&solver)[0];
+        assert!((centre(&start) - from_m - 0.05).length() < 0.01, "{start:?}");
+        advance(&mut solver, 0.25);
+        let end = bodies_of(&solver)[0];
+        let travelled = place(&end) - place(&start);
+        assert!((travelled - 0.25 * velocity_m_s.as_dvec3()).length() < 1e-5 * f64::from(velocity_m_s.length()), "{travelled}");
+        assert!((centre(&end).as_dvec3() - place(&end)).length() < 0.01, "{end:?}");
     }
 }
 

@@ -1,13 +1,14 @@
 //! Each pass over bodies against its twin.
 
-use super::{Settings, advance, bodies_of, incline, moving, solver};
+use super::{Settings, advance, bodies_of, floating, incline, moving, solver};
 use crate::gpu::{Gpu, Recording};
 use crate::solver::advance::Substep;
 use crate::solver::rigid::body::{self, Contact, Manifold};
 use crate::solver::rigid::twin::{self, World};
 use crate::solver::twin::{self as solver_twin, Surroundings};
 use crate::solver::validate::{ball, block, joined, rigid_body as rigid};
-use crate::solver::{Collider, Particles, Substance, obstacles};
+use crate::solver::{Collider, Field, Particles, Substance, obstacles};
+use crate::spec::expression::{Kind, Program, parse};
 use crate::spec::{ColliderShape, SphereShape};
 use glam::{Quat, Vec3};
 
@@ -90,6 +91,31 @@ fn contacts_impulses_and_places_are_those_of_the_twin() {
         assert!((want.f().x_axis - got.f().x_axis).length() < 1e-5);
         assert!(want.affine.iter().zip(&got.affine).all(|(a, b)| (a - b).abs() < 1e-5));
     }
+}
+
+#[test]
+fn what_millions_of_members_bring_is_summed_exactly() {
+    // Their low words have all but filled one, to the other side of zero, when the present few add theirs.
+    let tree = parse("vec3(0)", Kind::Vector).expect("an expression");
+    let acceleration = Program::of(&tree).expect("a program");
+    let fields = vec![Field { name: "none".to_owned(), object: 0, from_s: 0.0, to_s: f64::INFINITY, acceleration }];
+    let particles = rigid(block(Vec3::ZERO, Vec3::splat(0.1), 0.025, 1e5, 0.3), 0.3, 0.0);
+    let mut solver = solver(Settings { fields, ..floating() }, &particles);
+    advance(&mut solver, 0.001);
+    solver.edit(|s| s.velocity_m_s += Vec3::new(1e-3, 0.0, -1e-3)).expect("an edit");
+    let (gpu, rigid) = (solver.gpu.clone(), solver.rigid.clone().expect("a body"));
+    let zero = [(1u32 << 20).wrapping_neg(), u32::MAX - 100];
+    gpu.upload(&rigid.driven, &[0, 1].map(|_| [[zero[0]; 3], [zero[1]; 3]]));
+    solver.start_segment();
+    let bound = solver.bind_both().expect("bound");
+    let bound = bound[solver.current].rigid.as_ref().expect("rigid passes");
+    let substep = Substep { dt_s: 1e-4, dt_next_s: 0.0, index: solver.substep, job: 0, since_s: 0.0, lag: 0 };
+    let mut recording = Recording::default();
+    rigid.record_substep(bound, &substep, particles.len() as u32, &mut recording);
+    gpu.submit(&recording);
+    let motion = solver.motions().expect("motions")[0];
+    assert!((motion.velocity_m_s - Vec3::new(1e-3, 0.0, -1e-3)).length() < 1e-7, "{motion:?}");
+    assert!(motion.spin_rad_s.length() < 1e-5, "{motion:?}");
 }
 
 #[test]
