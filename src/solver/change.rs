@@ -93,6 +93,7 @@ impl Solver {
                     (state.mu_pa, state.lambda_pa, state.affine) = (0.0, 0.0, [0.0; 9]);
                 }
             }
+            state.history = self.laws.substances[state.substance()].history_with(state.f(), state.history);
         }
         if bodies_change {
             self.reassemble(&mut states, &mut unstressed)?;

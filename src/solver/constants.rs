@@ -102,6 +102,15 @@ pub const PULL: f32 = 8.0 / (std::f32::consts::PI * (1.0 / 168.0 - PULL_ZERO / 1
 /// less 1. Water wets most things at about 60 degrees.
 pub const WETTING: f32 = 0.75;
 
+/// Lame's lambda over mu from which on a solid's changes of volume are evened over each cell: Poisson's ratio 0.41.
+pub const EVEN_FROM: f32 = 4.5;
+/// The largest change of ln J between two sorts that is evened.
+pub const EVEN_MOST: f32 = 0.25;
+/// Fixed-point units of a cell's volume; 128 of them fit a cell.
+pub const VOLUME_UNITS: f32 = 16_777_216.0;
+/// And of a cell's volume times a gain of ln J by 1: 64 cells' volumes at [`EVEN_MOST`] fit.
+pub const GAIN_UNITS: f32 = 134_217_728.0;
+
 /// Sweeps of the singular values, each over all three pairs of columns; most matrices take three.
 pub const SVD_SWEEPS: u32 = 6;
 /// Logarithmic laws follow stretches from this.
@@ -177,8 +186,9 @@ pub const RIGID_SLIDES: u32 = 4;
 pub const RIGID_ROUNDS: u32 = 8;
 /// And after, without the push that takes overlaps apart.
 pub const RIGID_CALM_ROUNDS: u32 = 4;
-/// Stiffness of that push, as the frequency of a spring.
-pub const RIGID_HERTZ: f32 = 60.0;
+/// Stiffness of that push, as the frequency of a spring. At half of it a stack of ten sways for two seconds; at
+/// twice, contacts rattle.
+pub const RIGID_HERTZ: f32 = 120.0;
 /// Its damping ratio.
 pub const RIGID_DAMPING: f32 = 10.0;
 /// No overlap opens faster than this many radii of the body a second.
@@ -247,6 +257,10 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("VISCOPLASTIC", Constant::U32(substance::VISCOPLASTIC)),
         ("SAND", Constant::U32(substance::SAND)),
         ("SNOW", Constant::U32(substance::SNOW)),
+        ("EVEN_FROM", Constant::F32(EVEN_FROM)),
+        ("EVEN_MOST", Constant::F32(EVEN_MOST)),
+        ("VOLUME_UNITS", Constant::F32(VOLUME_UNITS)),
+        ("GAIN_UNITS", Constant::F32(GAIN_UNITS)),
         ("SVD_SWEEPS", Constant::U32(SVD_SWEEPS)),
         ("STRETCH_LEAST", Constant::F32(STRETCH_LEAST)),
         ("STRETCH_MOST", Constant::F32(STRETCH_MOST)),

@@ -15,6 +15,7 @@ use super::sph::Sph;
 use super::state::{self, ParticleState, StateBuffers};
 use super::transfer::Transfers;
 use super::types::{Particles, Placement, Settings, Softened, SolverError};
+use super::volume::VolumePasses;
 use super::watch::{Control, Watch};
 use crate::gpu::{Gpu, Recording, Tier};
 use crate::spec::limits;
@@ -78,6 +79,8 @@ pub struct Solver {
     pub(super) laws: Laws,
     /// Of liquids, where there are any.
     pub(super) liquid: Option<LiquidPasses>,
+    /// Of what is nearly incompressible, where anything is.
+    pub(super) volume: Option<VolumePasses>,
     pub(super) object_count: u32,
     /// Contact between objects, where there are several.
     pub(super) encounter: Option<Encounter>,
@@ -156,6 +159,7 @@ impl Solver {
             encounter: Encounter::new(gpu, &settings, &states, &particles.substances, object_count)?,
             laws: Laws::new(gpu)?,
             liquid: None,
+            volume: None,
             control: gpu.storage::<Control>("solver.control", 1)?,
             buffers: [StateBuffers::new(gpu, "solver.even", n)?, StateBuffers::new(gpu, "solver.odd", n)?],
             current: 0,
@@ -182,6 +186,7 @@ impl Solver {
         solver.set_substances(&particles.substances)?;
         solver.scale_liquids(&states);
         solver.survey(&states);
+        solver.watch_volumes(&states);
         solver.buffers[0].upload(gpu, &states);
         Ok(solver)
     }
@@ -307,6 +312,7 @@ impl Solver {
         self.scale_liquids(&states);
         self.buffers[self.current].upload(&self.gpu, &states);
         self.survey(&states);
+        self.watch_volumes(&states);
         self.seen = None;
     }
 

@@ -70,6 +70,8 @@ pub(super) struct GridBuffers {
     pub active_groups: wgpu::Buffer,
     /// Of liquids, where there are any.
     pub liquid: Option<LiquidFields>,
+    /// Of what is nearly incompressible, where anything is; see `shaders/solver/volume.wgsl`.
+    pub gains: Option<wgpu::Buffer>,
     /// What rigid bodies and soft matter share, where there are both.
     pub meeting: Option<MeetingBuffers>,
 }
@@ -85,6 +87,7 @@ pub(super) struct MeetingBuffers {
 const NODE_BYTES: u64 = 52;
 const LAYER_BYTES: u64 = 4;
 const MEETING_BYTES: u64 = 76;
+const GAIN_BYTES: u64 = 8;
 /// Bytes for one block of the window, and of the map.
 const SPREAD_BYTES: u64 = 12;
 /// A software adapter shares the machine's memory and is slow over much of it.
@@ -105,6 +108,8 @@ pub(super) struct GridKind {
     pub wet: bool,
     /// Whether soft matter meets rigid bodies.
     pub meets: bool,
+    /// Whether anything is nearly incompressible.
+    pub evens: bool,
 }
 
 /// Bytes that a grid may take.
@@ -123,7 +128,11 @@ fn widest_buffer(gpu: &Gpu) -> u64 {
 /// Blocks that can be stored.
 fn allowed_blocks(gpu: &Gpu, kind: GridKind) -> u64 {
     let more = |yes: bool, bytes: u64| if yes { bytes } else { 0 };
-    let bytes = NODE_BYTES + more(kind.layers > 1, LAYER_BYTES) + more(kind.meets, MEETING_BYTES) + more(kind.wet, LiquidFields::NODE_BYTES);
+    let bytes = NODE_BYTES
+        + more(kind.layers > 1, LAYER_BYTES)
+        + more(kind.meets, MEETING_BYTES)
+        + more(kind.wet, LiquidFields::NODE_BYTES)
+        + more(kind.evens, GAIN_BYTES);
     (widest_buffer(gpu) / if kind.meets { 64 } else { 16 }).min(allowed_bytes(gpu) / bytes) / 64 - 4
 }
 
@@ -157,6 +166,7 @@ impl GridBuffers {
             items: gpu.storage::<[u32; 4]>("solver.items", stored + particles / TILE_LANES as usize + 2)?,
             active_groups: gpu.storage::<[u32; 4]>("solver.active_groups", 2)?,
             liquid: if kind.wet { Some(LiquidFields::new(gpu, nodes)?) } else { None },
+            gains: if kind.evens { Some(gpu.storage::<[i32; 2]>("solver.gains", nodes)?) } else { None },
             meeting: if kind.meets { Some(MeetingBuffers::new(gpu, nodes)?) } else { None },
         })
     }
@@ -190,7 +200,7 @@ pub(super) fn params_buffer(gpu: &Gpu, params: &Params, spread: usize) -> Result
 impl Solver {
     /// What the scene asks of its grid now.
     pub(super) fn grid_kind(&self) -> GridKind {
-        GridKind { layers: self.params.layers, wet: self.liquid.is_some(), meets: self.rigid.is_some() && self.soft }
+        GridKind { layers: self.params.layers, wet: self.liquid.is_some(), meets: self.rigid.is_some() && self.soft, evens: self.volume.is_some() }
     }
 
     /// Makes the window hold stencils from `low` to `high` with room around them.

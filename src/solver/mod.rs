@@ -33,6 +33,7 @@ mod substance;
 mod transfer;
 mod types;
 pub mod validate;
+mod volume;
 mod watch;
 
 use crate::gpu::{Gpu, KernelSource};
@@ -61,6 +62,7 @@ pub fn kernels() -> Vec<KernelSource> {
     all.extend(encounter::kernels());
     all.extend(fields::kernels());
     all.extend(liquid::kernels());
+    all.extend(volume::kernels());
     all.extend(sph::kernels());
     all.extend(rigid::all_kernels());
     all

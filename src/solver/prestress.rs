@@ -137,6 +137,7 @@ impl Solver {
         for (i, (state, found)) in states.iter_mut().zip(&found).enumerate() {
             if supported.contains(&state.object()) && !state.is_rigid() && can_carry(found.f()) {
                 state.deformation = found.deformation;
+                state.history = self.laws.substances[state.substance()].history_with(state.f(), state.history);
                 let inverse = state.f().as_dmat3().inverse().as_mat3().transpose();
                 let rows = [inverse.x_axis, inverse.y_axis, inverse.z_axis].map(|row| row.extend(0.0).to_array());
                 unstressed[i] = bytemuck::cast(rows);

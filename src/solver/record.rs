@@ -10,6 +10,7 @@ use super::rigid::RigidBound;
 use super::sph::SphBound;
 use super::transfer::TransferBound;
 use super::types::SolverError;
+use super::volume::VolumeBound;
 use crate::gpu::Recording;
 
 /// The bind groups of the passes over one of the two state buffers.
@@ -31,6 +32,7 @@ pub(super) struct Bound {
     pub grid: wgpu::BindGroup,
     pub transfers: TransferBound,
     pub liquid: Option<LiquidBound>,
+    pub volume: Option<VolumeBound>,
     pub sph: Option<SphBound>,
 }
 
@@ -56,6 +58,9 @@ impl Solver {
         if let Some(liquid) = b.liquid.as_ref().filter(|_| sorts) {
             let span_s = plan.time_s((step + plan.sort_every).min(plan.substeps)) - plan.time_s(step);
             self.record_liquid(liquid, &b.active_groups, span_s as f32, recording);
+        }
+        if let Some(volume) = b.volume.as_ref().filter(|_| sorts) {
+            self.record_volume(volume, recording);
         }
         if self.soft {
             self.record_soft(b, plan, step, &substep, recording);
@@ -167,6 +172,7 @@ impl Solver {
             p2g: gpu.bind(&p.p2g, &[params, kinematics, matter, &self.colliders_buffer, &grid.sums, &grid.marks, &self.control, &laws.table]),
             grid: gpu.bind(&p.grid, &on_grid),
             liquid: self.bind_liquid(grid, state),
+            volume: self.bind_volume(grid, state),
             transfers: self.transfers.bind(self, grid, state),
             sph: self.sph().map(|sph| sph.bind(self, grid, current)),
         }

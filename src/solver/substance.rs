@@ -1,6 +1,6 @@
 //! What particles are made of: a table of substances, a row for each, that the passes read.
 
-use super::constants::{FRICTION, J_LEAST, LIQUID_J_MOST, LOOSE_MOST};
+use super::constants::{FRICTION, J_FLOOR, J_LEAST, LIQUID_J_MOST, LOOSE_MOST};
 use crate::spec::ElasticModel;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
@@ -245,6 +245,16 @@ impl Substance {
             Substance::Snow { .. } => 1.0,
             _ => 0.0,
         }
+    }
+
+    /// Whether its history is ln det F at the last sort, from which changes of volume are evened over a cell.
+    pub(super) fn remembers_volume(&self) -> bool {
+        matches!(self, Substance::Elastic(_) | Substance::Muscle { .. })
+    }
+
+    /// The history of what has this F from now on, whatever it was before where the law asks F alone.
+    pub(super) fn history_with(&self, f: Mat3, history: f32) -> f32 {
+        if self.remembers_volume() { f.determinant().max(J_FLOOR).ln() } else { history }
     }
 
     /// F and history with which matter goes on under this law that comes from another: solids keep the

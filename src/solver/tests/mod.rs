@@ -14,6 +14,7 @@ mod shown;
 mod sph;
 mod twins;
 mod validation;
+mod volume;
 
 use super::validate::block;
 use super::{Particles, Settings, Solver};

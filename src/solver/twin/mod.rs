@@ -7,6 +7,7 @@ pub mod material;
 pub mod prestress;
 pub mod sort;
 pub mod sph;
+pub mod volume;
 
 use super::constants::{F_MOST, FILM_LEAST, GAP_STEPS, REST_CELLS_MAX, SLIPS, WALL_FRICTION, WALL_GRIP, WALL_SOON_S};
 use super::core::Params;
