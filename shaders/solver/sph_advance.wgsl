@@ -6,16 +6,17 @@
 @group(0) @binding(2) var<storage, read> place: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> nature: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> neighbours: array<vec4<u32>>;
-@group(0) @binding(5) var<storage, read> near: array<u32>;
-@group(0) @binding(6) var<storage, read> density: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read> pressure: array<f32>;
-@group(0) @binding(8) var<storage, read> base: array<vec4<f32>>;
-@group(0) @binding(9) var<storage, read> matter: array<vec4<f32>>;
-@group(0) @binding(10) var<storage, read> objects: array<vec4<f32>>;
-@group(0) @binding(11) var<storage, read> colliders: array<Collider>;
-@group(0) @binding(12) var<storage, read_write> kinematics: array<vec4<f32>>;
-@group(0) @binding(13) var<storage, read_write> kept: array<vec2<f32>>;
-@group(0) @binding(14) var<storage, read_write> control: Control;
+@group(0) @binding(5) var<storage, read> slopes: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> near: array<u32>;
+@group(0) @binding(7) var<storage, read> density: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read> pressure: array<f32>;
+@group(0) @binding(9) var<storage, read> base: array<vec4<f32>>;
+@group(0) @binding(10) var<storage, read> matter: array<vec4<f32>>;
+@group(0) @binding(11) var<storage, read> objects: array<vec4<f32>>;
+@group(0) @binding(12) var<storage, read> colliders: array<Collider>;
+@group(0) @binding(13) var<storage, read_write> kinematics: array<vec4<f32>>;
+@group(0) @binding(14) var<storage, read_write> kept: array<f32>;
+@group(0) @binding(15) var<storage, read_write> control: Control;
 var<immediate> substep: Substep;
 
 // Moves what got behind a surface back onto it; it keeps no inward velocity.
@@ -50,7 +51,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
             v = moved[1];
             kinematics[i] = vec4<f32>(moved[0], position.w);
             kinematics[n + i] = vec4<f32>(v, kinematics[n + i].w);
-            kept[bitcast<u32>(tag.x)] = vec2<f32>(pressure[i], pressure[n + i]);
+            kept[bitcast<u32>(tag.x)] = pressure[i];
             speed = length(v);
         } else {
             v -= substep.dt_s * (params.gravity_m_s2 + objects[bitcast<u32>(tag.y) & 0xffffu].xyz);

@@ -1,7 +1,6 @@
-// The velocities that the correction of density starts from: those free of divergence, and all that does
-// not depend on pressure: weight, what drives the object, surface tension, viscosity where it is not
-// stiff. That correction's first half round is made along with it, for its pressures are known; stiff viscosity
-// starts from there.
+// The velocities that the correction starts from, after all that does not depend on pressure: weight, what drives
+// the object, surface tension, viscosity where it is not stiff. The correction's first half round is made along
+// with it, for its pressures are those of the last substep; stiff viscosity starts from there.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> solve: Solve;
@@ -11,12 +10,13 @@
 @group(0) @binding(5) var<storage, read> place: array<vec4<f32>>;
 @group(0) @binding(6) var<storage, read> nature: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read> neighbours: array<vec4<u32>>;
-@group(0) @binding(8) var<storage, read> near: array<u32>;
-@group(0) @binding(9) var<storage, read> density: array<vec4<f32>>;
-@group(0) @binding(10) var<storage, read> pressure: array<f32>;
-@group(0) @binding(11) var<storage, read> motion: array<vec4<f32>>;
-@group(0) @binding(12) var<storage, read_write> predicted: array<vec4<f32>>;
-@group(0) @binding(13) var<storage, read_write> corrected: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read> slopes: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read> near: array<u32>;
+@group(0) @binding(10) var<storage, read> density: array<vec4<f32>>;
+@group(0) @binding(11) var<storage, read> pressure: array<f32>;
+@group(0) @binding(12) var<storage, read> motion: array<vec4<f32>>;
+@group(0) @binding(13) var<storage, read_write> predicted: array<vec4<f32>>;
+@group(0) @binding(14) var<storage, read_write> corrected: array<vec4<f32>>;
 var<immediate> substep: Substep;
 
 struct Own {
@@ -31,17 +31,17 @@ struct Own {
 // Sums over neighbours, each without its common factor.
 struct Pull {
     force: vec3<f32>,
-    // What the pressures of either correction push.
-    density: vec3<f32>,
-    divergence: vec3<f32>,
+    // What the pressures push.
+    push: vec3<f32>,
 }
 
-fn meet(sums: ptr<function, Pull>, me: Own, j: u32, liquid: bool) {
+fn meet(sums: ptr<function, Pull>, me: Own, j: u32, slope: f32, liquid: bool) {
     let other = place[j];
     let its = nature[j];
     let y = (me.at.xyz - other.xyz) * params.per_m;
     let q = length(y);
-    let volume = abs(other.w);
+    // The particle itself, beyond the end of a list, has no slope.
+    let volume = select(abs(other.w), 0.0, slope == 0.0);
     let steep = steepness(q);
     let alike = liquid && me.liquid;
     let along = y / max(q, 1e-6);
@@ -49,11 +49,7 @@ fn meet(sums: ptr<function, Pull>, me: Own, j: u32, liquid: bool) {
     let viscosity = me.viscous * couple_viscosity(me.nature.z, its.z) + eddies(approach / max(q, 1e-6)) * (2.0 / (me.nature.x + its.x));
     let tension = couple_tension(me.nature.y, its.y, alike);
     (*sums).force += (VISCOUS * viscosity * volume * steep * approach / (q * q + SOFT_DISTANCE)) * y - (tension * volume * pull(q)) * along;
-    if (liquid) {
-        let push = (other.w * select(solid_steepness(q), steep, me.liquid)) * y;
-        (*sums).density += pressure[j] * push;
-        (*sums).divergence += pressure[params.count + j] * push;
-    }
+    (*sums).push += (select(0.0, pressure[j], liquid) * slope) * y;
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -71,20 +67,24 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let me = Own(place[i], nature[i], v.xyz, select(0.0, 1.0, substep.job == 0u), list.liquid);
     let wall = density[n + i];
     let gradient = density[i].xyz;
-    var sums = Pull(vec3<f32>(0.0), pressure[i] * gradient, pressure[n + i] * gradient);
+    var sums = Pull(vec3<f32>(0.0), pressure[i] * gradient);
     for (var k = 0u; k < list.liquids; k += 4u) {
-        let j = liquids_from(k, i);
-        meet(&sums, me, j.x, true);
-        meet(&sums, me, j.y, true);
-        meet(&sums, me, j.z, true);
-        meet(&sums, me, j.w, true);
+        let entry = liquids_from(k, i);
+        let j = neighbours[entry];
+        let slope = slopes[entry];
+        meet(&sums, me, j.x, slope.x, true);
+        meet(&sums, me, j.y, slope.y, true);
+        meet(&sums, me, j.z, slope.z, true);
+        meet(&sums, me, j.w, slope.w, true);
     }
     for (var k = 0u; k < list.solids; k += 4u) {
-        let j = solids_from(k, i);
-        meet(&sums, me, j.x, false);
-        meet(&sums, me, j.y, false);
-        meet(&sums, me, j.z, false);
-        meet(&sums, me, j.w, false);
+        let entry = solids_from(k, i);
+        let j = neighbours[entry];
+        let slope = slopes[entry];
+        meet(&sums, me, j.x, slope.x, false);
+        meet(&sums, me, j.y, slope.y, false);
+        meet(&sums, me, j.z, slope.z, false);
+        meet(&sums, me, j.w, slope.w, false);
     }
     var force = sums.force;
     if (list.liquid) {
@@ -105,7 +105,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let weight_m_s2 = params.gravity_m_s2 + objects[object].xyz;
     let accelerated = substep.dt_s * (weight_m_s2 + (params.per_m * params.per_m * me.nature.x) * force);
     let factor = -substep.dt_s * params.per_m * me.nature.x;
-    let free = v.xyz + factor * along_walls(sums.divergence, wall) + accelerated;
+    let free = v.xyz + accelerated;
     predicted[i] = vec4<f32>(free, v.w);
-    corrected[i] = vec4<f32>(free + factor * along_walls(sums.density, wall), v.w);
+    corrected[i] = vec4<f32>(free + factor * along_walls(sums.push, wall), v.w);
 }

@@ -31,11 +31,11 @@ fn braking(i: u32, list: Near, v: vec4<f32>) -> vec3<f32> {
     let mine = place[i];
     var sum = vec3<f32>(0.0);
     for (var k = 0u; k < list.liquids; k += 4u) {
-        let j = liquids_from(k, i);
+        let j = neighbours[liquids_from(k, i)];
         sum -= (brake(j.x, mine.xyz, v) + brake(j.y, mine.xyz, v)) + (brake(j.z, mine.xyz, v) + brake(j.w, mine.xyz, v));
     }
     for (var k = 0u; k < list.solids; k += 4u) {
-        let j = solids_from(k, i);
+        let j = neighbours[solids_from(k, i)];
         sum -= (brake(j.x, mine.xyz, v) + brake(j.y, mine.xyz, v)) + (brake(j.z, mine.xyz, v) + brake(j.w, mine.xyz, v));
     }
     if (list.liquid) {

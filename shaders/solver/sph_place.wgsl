@@ -1,26 +1,30 @@
-// Start of a substep: what the passes over neighbours read of each particle, and the pressures that
-// the last substep ended with.
+// Start of a substep: what the passes over neighbours read of each particle, the pressures that the last
+// substep ended with, and no rounds that would run by themselves.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> substances: array<Substance>;
-// Pressures of either correction, in the original order.
-@group(0) @binding(4) var<storage, read> kept: array<vec2<f32>>;
+// Pressures, in the original order.
+@group(0) @binding(4) var<storage, read> kept: array<f32>;
 // Position, and volume in cells; that of a solid with a minus.
 @group(0) @binding(5) var<storage, read_write> place: array<vec4<f32>>;
 // Velocity, viscosity.
 @group(0) @binding(6) var<storage, read_write> motion: array<vec4<f32>>;
 // 1 / density, surface tension, viscosity.
 @group(0) @binding(7) var<storage, read_write> nature: array<vec4<f32>>;
-// Of density, then of divergence.
 @group(0) @binding(8) var<storage, read_write> pressure: array<f32>;
 @group(0) @binding(9) var<storage, read_write> errors: array<u32>;
+// Workgroups of even rounds, and of odd ones.
+@group(0) @binding(10) var<storage, read_write> even: array<vec4<u32>>;
+@group(0) @binding(11) var<storage, read_write> odd: array<vec4<u32>>;
 
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (id.x < SPH_SLOTS) {
         errors[id.x] = 0u;
+        even[id.x] = vec4<u32>(0u);
+        odd[id.x] = vec4<u32>(0u);
     }
     let n = params.count;
     let i = id.x;
@@ -36,11 +40,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         volume *= clamp(determinant(read_deformation(i)), 0.1, 10.0);
     }
     let cells = volume * params.per_m * params.per_m * params.per_m;
-    let earlier = select(vec2<f32>(0.0), kept[bitcast<u32>(tag.x)], liquid);
     let viscosity = select(0.0, substance.values[0], liquid);
     place[i] = vec4<f32>(position.xyz, select(-cells, cells, liquid));
     motion[i] = vec4<f32>(kinematics[n + i].xyz, viscosity);
     nature[i] = vec4<f32>(volume / position.w, select(0.0, substance.values[1], liquid), viscosity, 0.0);
-    pressure[i] = earlier.x;
-    pressure[n + i] = earlier.y;
+    pressure[i] = select(0.0, kept[bitcast<u32>(tag.x)], liquid);
 }

@@ -5,24 +5,20 @@
 // with the pressure of the liquid beside it: its part of the gradient counts twice, for both sides.
 
 // Of one neighbour, without the common factor.
-fn press(j: u32, at: vec3<f32>, liquid: bool, offset: u32) -> vec3<f32> {
-    let other = place[j];
-    let y = (at - other.xyz) * params.per_m;
-    let q = length(y);
-    let steep = select(solid_steepness(q), steepness(q), liquid);
-    return (other.w * pressure[offset + j] * steep) * y;
+fn press(j: u32, slope: f32, at: vec3<f32>) -> vec3<f32> {
+    return (pressure[j] * slope) * (at - place[j].xyz);
 }
 
 fn pushed(i: u32, list: Near) -> vec3<f32> {
-    let n = params.count;
     let at = place[i].xyz;
-    let offset = solve.pressure;
-    let wall = density[n + i];
-    var sum = pressure[offset + i] * density[i].xyz;
+    let wall = density[params.count + i];
+    var sum = vec3<f32>(0.0);
     for (var k = 0u; k < list.liquids; k += 4u) {
-        let j = liquids_from(k, i);
-        sum += (press(j.x, at, list.liquid, offset) + press(j.y, at, list.liquid, offset))
-            + (press(j.z, at, list.liquid, offset) + press(j.w, at, list.liquid, offset));
+        let entry = liquids_from(k, i);
+        let j = neighbours[entry];
+        let slope = slopes[entry];
+        sum += (press(j.x, slope.x, at) + press(j.y, slope.y, at)) + (press(j.z, slope.z, at) + press(j.w, slope.w, at));
     }
-    return (-substep.dt_s * params.per_m * nature[i].x) * along_walls(sum, wall);
+    let all = pressure[i] * density[i].xyz + params.per_m * sum;
+    return (-substep.dt_s * params.per_m * nature[i].x) * along_walls(all, wall);
 }

@@ -6,14 +6,17 @@
 //! of their own, and what the liquid does to them goes into their velocity before the grid sees them.
 //! A wall is felt as if the liquid went on behind it in layers, in closed form.
 //!
-//! A substep: lists of neighbours; velocities made free of divergence; weight, tension, viscosity;
-//! velocities that keep the density; motion. Both corrections are relaxed Jacobi rounds over pressures
-//! that are never negative. How many are made is decided on the device, by sums of integers.
+//! A substep: lists of neighbours; weight, tension, viscosity; velocities that keep the density; motion. The
+//! correction is relaxed Jacobi rounds over pressures that are never negative, from those of the last substep on.
+//! How many are made is decided on the device, by sums of integers: each round lets the next one run, and one
+//! that is not needed has no workgroups.
+//!
+//! Passes over neighbours: the search, forces, half a round, a round and a half for each further one, motion.
 
 mod passes;
 
 use super::advance::Substep;
-use super::constants::{VISCOUS, VISCOUS_RANGE};
+use super::constants::{SPH_LEAST_ROUNDS, VISCOUS, VISCOUS_RANGE, WORKGROUP};
 use super::core::Solver;
 use super::grid::GridBuffers;
 use super::kept::Kept;
@@ -28,16 +31,10 @@ pub(super) use passes::{SphPasses, kernels};
 const COLUMNS: u32 = 16;
 /// Lists are never longer.
 const COLUMNS_MOST: u32 = 256;
-/// Rounds at most that keep the density, and that remove divergence.
-const ROUNDS: [u32; 2] = [40, 16];
-/// Mean relative errors that are small enough.
-const TOLERANCE: [f32; 2] = [1e-4, 1e-3];
-/// Rounds made in any case.
-const LEAST_ROUNDS: [u32; 2] = [2, 1];
-/// First counters of the errors.
-const SLOTS: [u32; 2] = [0, 64];
+/// Rounds at most. What is left after them is the next substep's to correct.
+const ROUNDS: u32 = 24;
 /// A substep in free fall from rest moves a particle by half the square of this, in spacings.
-const FALL_SHARE: f64 = 0.1;
+const FALL_SHARE: f64 = 0.15;
 /// Share of the period of the shortest capillary wave, times 1 / sqrt(2 pi): half of what a continuous surface
 /// takes (Brackbill et al. 1992), for pairs of particles are stiffer.
 const CAPILLARY: f64 = 0.2;
@@ -50,13 +47,9 @@ const VISCOUS_LEFT: f64 = 1e-2;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct Solve {
-    of_density: f32,
-    tolerance: f32,
-    least_rounds: u32,
-    slot: u32,
-    pressure: u32,
     liquids: u32,
     columns: u32,
+    groups: u32,
 }
 
 /// The smoothed particles' part of a solver. Buffers are in the order of the sort and live within a
@@ -70,8 +63,11 @@ pub(super) struct Sph {
     viscosity_pa_s: f32,
     least_density_kg_m3: f32,
     tension_over_density: f32,
-    solves: [wgpu::Buffer; 2],
+    solve: wgpu::Buffer,
+    /// Workgroups of even rounds, and of odd ones: a pass cannot write the counts that it runs by.
+    pub turns: [wgpu::Buffer; 2],
     pub neighbours: wgpu::Buffer,
+    pub slopes: wgpu::Buffer,
     pub near: wgpu::Buffer,
     pub place: wgpu::Buffer,
     pub motion: wgpu::Buffer,
@@ -84,7 +80,7 @@ pub(super) struct Sph {
     pub pressure: wgpu::Buffer,
     pub reached: wgpu::Buffer,
     pub errors: wgpu::Buffer,
-    /// Pressures of both corrections, by the particles' original order.
+    /// Pressures by the particles' original order.
     kept: wgpu::Buffer,
 }
 
@@ -92,15 +88,13 @@ pub(super) struct Sph {
 pub(super) struct SphBound {
     pub place: wgpu::BindGroup,
     pub near: wgpu::BindGroup,
-    /// Of divergence.
-    pub press_divergence: wgpu::BindGroup,
-    pub correct_divergence: wgpu::BindGroup,
     pub forces: wgpu::BindGroup,
     /// First, odd and even rounds.
     pub implicit: [wgpu::BindGroup; 3],
     pub settle: wgpu::BindGroup,
-    pub press_density: wgpu::BindGroup,
-    pub correct_density: wgpu::BindGroup,
+    /// Even and odd rounds.
+    pub press: [wgpu::BindGroup; 2],
+    pub correct: wgpu::BindGroup,
     pub advance: wgpu::BindGroup,
 }
 
@@ -109,7 +103,8 @@ impl Sph {
     /// of the state.
     pub fn new(gpu: &Gpu, n: usize) -> Result<(Sph, Kept), SolverError> {
         let vectors = |name: &str| gpu.storage::<[f32; 4]>(&format!("solver.sph_{name}"), n);
-        let kept = Kept::new(gpu, "solver.sph_kept", &vec![[0f32; 2]; n])?;
+        let kept = Kept::new(gpu, "solver.sph_kept", &vec![0f32; n])?;
+        let turns = |name: &str| gpu.storage::<[u32; 4]>(name, super::constants::SPH_SLOTS as usize);
         let sph = Sph {
             passes: SphPasses::new(gpu),
             columns: COLUMNS,
@@ -117,8 +112,10 @@ impl Sph {
             viscosity_pa_s: 0.0,
             least_density_kg_m3: f32::INFINITY,
             tension_over_density: 0.0,
-            solves: [gpu.storage::<Solve>("solver.sph_solve", 1)?, gpu.storage::<Solve>("solver.sph_solve_divergence", 1)?],
+            solve: gpu.storage::<Solve>("solver.sph_solve", 1)?,
+            turns: [turns("solver.sph_even_rounds")?, turns("solver.sph_odd_rounds")?],
             neighbours: gpu.storage::<[u32; 4]>("solver.sph_neighbours", COLUMNS as usize * n)?,
+            slopes: gpu.storage::<[f32; 4]>("solver.sph_slopes", COLUMNS as usize * n)?,
             near: gpu.storage::<u32>("solver.sph_near", n)?,
             place: vectors("place")?,
             motion: vectors("motion")?,
@@ -128,7 +125,7 @@ impl Sph {
             predicted: vectors("predicted")?,
             corrected: vectors("corrected")?,
             slowed: vectors("slowed")?,
-            pressure: gpu.storage::<f32>("solver.sph_pressure", 2 * n)?,
+            pressure: gpu.storage::<f32>("solver.sph_pressure", n)?,
             reached: gpu.storage::<f32>("solver.sph_reached", n)?,
             errors: gpu.storage::<u32>("solver.sph_errors", super::constants::SPH_SLOTS as usize)?,
             kept: kept.live.clone(),
@@ -150,19 +147,9 @@ impl Sph {
         }
     }
 
-    fn upload_solves(&self, gpu: &Gpu, count: usize) {
-        for k in 0..2 {
-            let solve = Solve {
-                of_density: [1.0, 0.0][k],
-                tolerance: TOLERANCE[k],
-                least_rounds: LEAST_ROUNDS[k],
-                slot: SLOTS[k],
-                pressure: (k * count) as u32,
-                liquids: self.liquids,
-                columns: self.columns,
-            };
-            gpu.upload(&self.solves[k], &[solve]);
-        }
+    fn upload_solve(&self, gpu: &Gpu, count: usize) {
+        let groups = (count as u32).div_ceil(WORKGROUP);
+        gpu.upload(&self.solve, &[Solve { liquids: self.liquids, columns: self.columns, groups }]);
     }
 
     /// Longest substep: cfl spacing / |v|, a share of the time that a spacing of free fall takes, and of
@@ -192,38 +179,35 @@ impl Sph {
         let (gpu, p, params) = (&solver.gpu, &self.passes, &solver.params_buffer);
         let (kinematics, matter) = (&solver.buffers[current].kinematics, &solver.buffers[current].matter);
         let (objects, colliders, control) = (&solver.objects_buffer, &solver.colliders_buffer, &solver.control);
-        let [density_solve, divergence_solve] = &self.solves;
-        let press = |solve, base| {
-            let lists = [params, solve, &self.place, &self.nature, &self.neighbours, &self.near, &self.density, &self.pressure, base];
-            gpu.bind(&p.sph_press, &[&lists[..], &[&self.errors, &self.corrected]].concat())
-        };
-        let correct = |solve| {
-            let lists = [params, solve, &self.place, &self.neighbours, &self.near, &self.density, &self.answer, &self.corrected];
-            gpu.bind(&p.sph_correct, &[&lists[..], &[&self.pressure, &self.errors, &self.reached]].concat())
+        let lists = [&self.neighbours, &self.slopes, &self.near];
+        let press = |next: usize| {
+            let own = [params, &self.solve, &self.place, &self.nature];
+            let moved = [&self.density, &self.pressure, &self.predicted, &self.errors, &self.corrected, &self.turns[next]];
+            gpu.bind(&p.sph_press, &[&own[..], &lists, &moved].concat())
         };
         let implicit = |present, next| {
-            let lists = [params, density_solve, colliders, &self.place, &self.nature, &self.neighbours, &self.near, &self.corrected];
-            gpu.bind(&p.sph_implicit, &[&lists[..], &[present, next, &self.errors]].concat())
+            let own = [params, &self.solve, colliders, &self.place, &self.nature, &self.neighbours, &self.near];
+            gpu.bind(&p.sph_implicit, &[&own[..], &[&self.corrected, present, next, &self.errors]].concat())
         };
-        let pushed = [params, density_solve, &self.place, &self.nature, &self.neighbours, &self.near, &self.density, &self.pressure, &self.predicted];
+        let corrected = [&self.density, &self.answer, &self.corrected, &self.pressure, &self.errors, &self.reached];
+        let pushed = [&self.density, &self.pressure, &self.predicted];
         let moved = [matter, objects, colliders, kinematics, &self.kept, control];
         let places = [params, kinematics, matter, &solver.laws.table, &self.kept];
-        let placed = [&self.place, &self.motion, &self.nature, &self.pressure, &self.errors];
-        let cells = [params, &self.place, &self.nature, &grid.cell_start, &grid.cell_end, colliders, density_solve];
-        let found = [&self.neighbours, &self.near, &self.density, &self.answer, control, &self.errors];
-        let around = [params, density_solve, matter, objects, colliders, &self.place, &self.nature, &self.neighbours, &self.near];
+        let [even, odd] = &self.turns;
+        let placed = [&self.place, &self.motion, &self.nature, &self.pressure, &self.errors, even, odd];
+        let cells = [params, &self.place, &self.nature, &grid.cell_start, &grid.cell_end, colliders, &self.solve];
+        let found = [&self.density, &self.answer, control, &self.errors];
+        let around = [params, &self.solve, matter, objects, colliders, &self.place, &self.nature];
         let forced = [&self.density, &self.pressure, &self.motion, &self.predicted, &self.corrected];
         SphBound {
-            place: gpu.bind(&p.sph_place, &[places, placed].concat()),
-            near: gpu.bind(&p.sph_near, &[&cells[..], &found[..]].concat()),
-            press_divergence: press(divergence_solve, &self.motion),
-            correct_divergence: correct(divergence_solve),
-            forces: gpu.bind(&p.sph_forces, &[&around[..], &forced[..]].concat()),
+            place: gpu.bind(&p.sph_place, &[&places[..], &placed].concat()),
+            near: gpu.bind(&p.sph_near, &[&cells[..], &lists, &found].concat()),
+            forces: gpu.bind(&p.sph_forces, &[&around[..], &lists, &forced].concat()),
             implicit: [implicit(&self.corrected, &self.motion), implicit(&self.motion, &self.slowed), implicit(&self.slowed, &self.motion)],
             settle: gpu.bind(&p.sph_settle, &[params, &self.near, &self.slowed, &self.predicted, &self.corrected]),
-            press_density: press(density_solve, &self.predicted),
-            correct_density: correct(density_solve),
-            advance: gpu.bind(&p.sph_advance, &[&pushed[..], &moved[..]].concat()),
+            press: [press(1), press(0)],
+            correct: gpu.bind(&p.sph_correct, &[&[params, &self.solve, &self.place], &lists[..], &corrected].concat()),
+            advance: gpu.bind(&p.sph_advance, &[&[params, &self.solve, &self.place, &self.nature], &lists[..], &pushed, &moved].concat()),
         }
     }
 
@@ -233,10 +217,6 @@ impl Sph {
         let job = |job: u32| Substep { job, ..*substep };
         recording.dispatch(&p.sph_place, &b.place, groups);
         recording.dispatch(&p.sph_near, &b.near, groups);
-        for round in 0..ROUNDS[1] {
-            recording.dispatch_with(&p.sph_press, &b.press_divergence, &job(round), groups);
-            recording.dispatch_with(&p.sph_correct, &b.correct_divergence, &job(round), groups);
-        }
         let implicit = viscous_rounds > 0;
         recording.dispatch_with(&p.sph_forces, &b.forces, &job(u32::from(implicit)), groups);
         for round in 0..viscous_rounds {
@@ -246,12 +226,18 @@ impl Sph {
         if implicit {
             recording.dispatch(&p.sph_settle, &b.settle, groups);
         }
-        for round in 0..ROUNDS[0] {
-            // The first half of the first round came with the forces.
-            if round > 0 {
-                recording.dispatch_with(&p.sph_press, &b.press_density, &job(round), groups);
+        // The first half of the first round came with the forces.
+        recording.dispatch_with(&p.sph_correct, &b.correct, &job(0), groups);
+        for round in 1..ROUNDS {
+            let parity = (round % 2) as usize;
+            if round < SPH_LEAST_ROUNDS {
+                recording.dispatch_with(&p.sph_press, &b.press[parity], &job(round), groups);
+                recording.dispatch_with(&p.sph_correct, &b.correct, &job(round), groups);
+            } else {
+                let at = u64::from(round) * size_of::<[u32; 4]>() as u64;
+                recording.indirect_with(&p.sph_press, &b.press[parity], &job(round), &self.turns[parity], at);
+                recording.indirect_with(&p.sph_correct, &b.correct, &job(round), &self.turns[parity], at);
             }
-            recording.dispatch_with(&p.sph_correct, &b.correct_density, &job(round), groups);
         }
         recording.dispatch_with(&p.sph_advance, &b.advance, substep, groups);
     }
@@ -262,7 +248,7 @@ impl Solver {
     pub(super) fn survey(&mut self, states: &[ParticleState]) {
         if let Some(sph) = &mut self.sph {
             sph.survey(&self.laws.substances, states);
-            sph.upload_solves(&self.gpu, states.len());
+            sph.upload_solve(&self.gpu, states.len());
             self.params.has_liquid = u32::from(sph.liquids > 0);
         }
     }
@@ -272,13 +258,12 @@ impl Solver {
         self.sph.as_ref().filter(|s| s.liquids > 0)
     }
 
-    /// Pressure of each particle of such a liquid, in the original order: what both corrections of the last
-    /// substep took together. 0 of all others.
+    /// Pressure of each particle of such a liquid at the end of the last substep, in the original order. 0 of all
+    /// others.
     pub(super) fn liquid_pressures_pa(&self) -> Result<Vec<f32>, SolverError> {
         let count = self.params.count as usize;
         let Some(sph) = &self.sph else { return Ok(vec![0.0; count]) };
-        let kept: Vec<[f32; 2]> = self.gpu.read(&sph.kept, count)?;
-        Ok(kept.iter().map(|[density, divergence]| density + divergence).collect())
+        Ok(self.gpu.read(&sph.kept, count)?)
     }
 
     /// Whether any particle exchanges with the grid.
@@ -290,9 +275,11 @@ impl Solver {
     pub(super) fn lengthen_lists(&mut self) -> Result<bool, SolverError> {
         let Some(sph) = self.sph.as_mut().filter(|s| s.columns < COLUMNS_MOST) else { return Ok(false) };
         let count = self.params.count as usize;
-        sph.neighbours = self.gpu.storage::<[u32; 4]>("solver.sph_neighbours", 2 * sph.columns as usize * count)?;
+        let fours = 2 * sph.columns as usize * count;
+        sph.neighbours = self.gpu.storage::<[u32; 4]>("solver.sph_neighbours", fours)?;
+        sph.slopes = self.gpu.storage::<[f32; 4]>("solver.sph_slopes", fours)?;
         sph.columns *= 2;
-        sph.upload_solves(&self.gpu, count);
+        sph.upload_solve(&self.gpu, count);
         Ok(true)
     }
 }

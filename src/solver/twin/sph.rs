@@ -134,7 +134,7 @@ pub fn near(states: &[ParticleState], around: &Surroundings) -> Vec<Particle> {
         if me.liquid {
             walls(&mut me, around);
             let change = me.gradient.dot(along_walls(&me, me.gradient)) * me.lightness;
-            me.answer = 1.0 / (me.answer + change).max(1e-3 * me.lightness);
+            me.answer = 1.0 / ((me.answer + change) * me.density.max(1.0)).max(1e-3 * me.lightness);
         }
         me.viscous *= f64::from(VISCOUS) * me.lightness / (cell * cell);
         (all[i].neighbours, all[i].density, all[i].gradient) = (me.neighbours, me.density, me.gradient);
@@ -195,17 +195,16 @@ pub fn pushed(all: &[Particle], pressure: &[f64], cell: f64, dt_s: f64) -> Vec<D
 }
 
 /// `sph_correct.wgsl`: the error that a liquid particle is left with.
-pub fn error(all: &[Particle], i: usize, corrected: &[DVec3], of_density: f64, cell: f64, dt_s: f64) -> f64 {
+pub fn error(all: &[Particle], i: usize, corrected: &[DVec3], cell: f64, dt_s: f64) -> f64 {
     let me = &all[i];
-    if of_density == 0.0 && me.neighbours.len() < FEW_NEIGHBOURS as usize {
-        return 0.0;
-    }
     let mut rate = me.gradient.dot(corrected[i]);
     for &j in &me.neighbours {
         let y = (me.x - all[j].x) / cell;
         rate -= all[j].volume * felt(me, &all[j], y.length()).1 * corrected[j].dot(y.normalize());
     }
-    of_density * (me.density - 1.0).min(f64::from(THIN_OUT) * dt_s) + rate / cell * dt_s
+    let excess = me.density - 1.0;
+    let drift = if excess < 0.0 { excess } else { (f64::from(DRIFT_SHARE) * excess).min(f64::from(THIN_OUT) * dt_s) };
+    drift + rate / cell * dt_s
 }
 
 /// `sph_forces.wgsl`: velocities after weight, tension and, where `viscous`, viscosity, but without pressures.
