@@ -105,7 +105,7 @@ impl Readback {
             .collect();
         let submission = gpu.queue.submit([encoder.finish()]);
         for (buffer, _) in &parts {
-            // An error here means a lost device, which shows when the range is read.
+            // An error here means a lost device or no memory, which shows when they are waited for.
             buffer.map_async(wgpu::MapMode::Read, .., |_| {});
         }
         Readback { parts, submission }
@@ -115,6 +115,7 @@ impl Readback {
     pub fn arrive(self, gpu: &Gpu) -> Result<Arrived, GpuError> {
         let poll = wgpu::PollType::Wait { submission_index: Some(self.submission), timeout: None };
         gpu.device.poll(poll).map_err(|e| gpu.lost(e))?;
+        gpu.sound()?;
         Ok(Arrived { parts: self.parts, gpu: gpu.clone() })
     }
 

@@ -58,6 +58,14 @@ pub enum GpuError {
         /// The adapter's name.
         device: String,
     },
+    /// The device has no memory left.
+    #[error("the device {device} has no memory left: use fewer Gaussians, a smaller picture or a smaller solver.cells_across ({reason})")]
+    NoMemory {
+        /// The adapter's name.
+        device: String,
+        /// What the driver said.
+        reason: String,
+    },
     /// The device was lost, or a result could not be read back.
     #[error("the device {device} stopped answering: {reason}")]
     Lost {
@@ -87,6 +95,8 @@ pub struct Gpu {
     pub(super) compiled: Arc<Compiled>,
     /// What read-backs land in.
     pub(super) staging: Arc<Staging>,
+    /// The first thing that the driver refused where no call could return it.
+    pub(super) refused: Arc<OnceLock<wgpu::Error>>,
 }
 
 impl Gpu {
@@ -95,8 +105,8 @@ impl Gpu {
         pollster::block_on(open(request))
     }
 
-    /// Wraps a device that a window already opened, so that both draw on one device.
-    pub fn from_parts(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Gpu {
+    /// What an open device can do.
+    fn of(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Gpu {
         let info = adapter.get_info();
         let features = device.features();
         Gpu {
@@ -105,6 +115,7 @@ impl Gpu {
             can_time: features.contains(TIMING),
             compiled: Arc::default(),
             staging: Arc::default(),
+            refused: hear_refusals(&device),
             device,
             queue,
             info,
@@ -127,6 +138,15 @@ impl Gpu {
         GpuError::Lost { device: self.info.name.clone(), reason: reason.to_string() }
     }
 
+    /// An error where the driver refused something since the device was opened: what was to be made then is not there.
+    pub fn sound(&self) -> Result<(), GpuError> {
+        match self.refused.get() {
+            None => Ok(()),
+            Some(wgpu::Error::OutOfMemory { source }) => Err(GpuError::NoMemory { device: self.info.name.clone(), reason: source.to_string() }),
+            Some(error) => Err(self.lost(error)),
+        }
+    }
+
     /// One device for all tests of a binary: opening one a test would cost more than the tests do.
     ///
     /// Returns an error where the machine has no Vulkan at all, which fails the test: none is skipped.
@@ -134,6 +154,18 @@ impl Gpu {
         static SHARED: OnceLock<Result<Gpu, String>> = OnceLock::new();
         SHARED.get_or_init(|| Gpu::open(&DeviceRequest::default()).map_err(|e| e.to_string())).clone()
     }
+}
+
+/// Keeps the first error of a device that no call returns, where it would else end the process.
+fn hear_refusals(device: &wgpu::Device) -> Arc<OnceLock<wgpu::Error>> {
+    let refused = Arc::new(OnceLock::new());
+    let heard = refused.clone();
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        tracing::error!(%error, "the driver refused something");
+        // Only the first one tells the cause.
+        let _ = heard.set(error);
+    }));
+    refused
 }
 
 /// Features that timing needs; asked for where the adapter has them.
@@ -225,5 +257,24 @@ async fn open(request: &DeviceRequest) -> Result<Gpu, GpuError> {
     let (device, queue) =
         adapter.request_device(&descriptor).await.map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
     tracing::debug!(name = info.name, "device opened");
-    Ok(Gpu::from_parts(adapter, device, queue))
+    Ok(Gpu::of(adapter, device, queue))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::Readback;
+
+    #[test]
+    fn what_the_driver_refuses_comes_with_the_next_read_back() {
+        // A device of its own: the shared one stays sound.
+        let gpu = Gpu::open(&DeviceRequest::default()).unwrap();
+        let good = gpu.storage::<u32>("good", 4).unwrap();
+        assert!(gpu.sound().is_ok() && gpu.read::<u32>(&good, 4).is_ok());
+        let size = gpu.device.limits().max_buffer_size + 4;
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        let refused = gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some("too large"), size, usage, mapped_at_creation: false });
+        let error = Readback::start(&gpu, &[(&refused, 16)]).arrive(&gpu).unwrap_err();
+        assert!(matches!(error, GpuError::Lost { .. } | GpuError::NoMemory { .. }), "{error}");
+    }
 }

@@ -122,9 +122,9 @@ impl<'a> Delivery<'a> {
         self.awaited.push_back(Awaited::End(Box::new(totals), Box::new(state)));
     }
 
-    /// Keeps the state that a scene stands in.
-    pub fn keep_standing(&mut self, key: &str, state: Checkpoint) -> Result<(), EngineError> {
-        self.keeper.keep(Item::Standing(key.to_owned(), state))
+    /// Keeps the state that a scene stands in, and what is to be said of it.
+    pub fn keep_standing(&mut self, key: &str, state: Checkpoint, said: Vec<String>) -> Result<(), EngineError> {
+        self.keeper.keep(Item::Standing(key.to_owned(), state, said))
     }
 
     /// Waits for the device, so that what was pushed comes as soon as it is encoded.

@@ -123,13 +123,18 @@ impl Engine {
 
     pub(super) fn plan_of(&self, ready: &Ready, spec: &Spec, options: &RunOptions, previous: Option<&Spec>) -> Plan {
         let kept = |stage: &str, key: &str| if self.store.contains(stage, key) { Action::Hit } else { Action::Run };
-        let missing = ready.segments.iter().position(|s| !self.store.contains("motion", &s.key));
+        let picture = if options.render { kept("picture", &ready.picture) } else { Action::Skip };
+        // New pictures are drawn from motion; a segment may have been kept as its end alone.
+        let serves = |segment: &Segment| match picture {
+            Action::Run => segments::get(&self.store, segment).ok().flatten().is_some_and(|kept| kept.meta.frame_bytes > 0),
+            _ => self.store.contains("motion", &segment.key),
+        };
+        let missing = ready.segments.iter().position(|s| !serves(s));
         let (simulate, from_s) = match missing {
             None => (Action::Hit, None),
             Some(0) => (Action::Run, None),
             Some(index) => (Action::Resume, Some(ready.resolved.time_s(ready.segments[index - 1].last, spec.time.fps))),
         };
-        let picture = if options.render { kept("picture", &ready.picture) } else { Action::Skip };
         let whole = ready.segments.last().map(|s| s.key.clone()).unwrap_or_default();
         let rows = [
             (StageName::Scene, ready.keys.scene.clone(), ready.prepared.action, None),

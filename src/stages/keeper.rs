@@ -14,8 +14,8 @@ const WAITING: usize = 16;
 
 /// Something to be kept.
 pub(super) enum Item {
-    /// The state that a scene stands in, under its key.
-    Standing(String, Checkpoint),
+    /// The state that a scene stands in, under its key, and what is to be said of it.
+    Standing(String, Checkpoint, Vec<String>),
     /// One frame of the motion of a segment.
     Motion(Arc<Segment>, Vec<u8>),
     /// The end of a segment: the state there, and what it says of itself.
@@ -72,10 +72,10 @@ fn write(store: &Store, mut album: Option<Album>, incoming: &Receiver<Item>) -> 
     let mut open: Option<(EntryWriter, BlobWriter)> = None;
     for item in incoming {
         match item {
-            Item::Standing(key, state) => {
+            Item::Standing(key, state, said) => {
                 let entry = store.begin("prestress", &key)?;
                 entry.put("state", &state.bytes()?)?;
-                entry.finish(serde_json::json!({}))?;
+                entry.finish(serde_json::json!({ "said": said }))?;
             }
             Item::Motion(segment, frame) => {
                 let (_, blob) = match &mut open {

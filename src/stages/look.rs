@@ -2,7 +2,7 @@
 //! scene as captured. And what `"auto"` means before a run.
 
 use super::engine::Engine;
-use super::run::replay_pictures;
+use super::run::Album;
 use super::{EngineError, RunOptions, still};
 use crate::render::Image;
 use crate::spec::{Auto, Spec};
@@ -15,8 +15,9 @@ impl Engine {
     /// Frames that are drawn anew carry no PNG.
     pub fn look(&mut self, spec: &Spec, base: &Path, options: &RunOptions, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
         let ready = self.ready(spec, base, options)?;
-        if self.store.contains("picture", &ready.picture) {
-            return replay_pictures(&self.store, &ready, sink);
+        if let Some(album) = Album::open(&self.store, &ready.picture)? {
+            album.show(sink, stop);
+            return Ok(());
         }
         let mut player = self.player(spec, base, options)?;
         for index in (0..player.frames.max(1)).take_while(|_| !stop.raised()) {

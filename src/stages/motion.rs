@@ -45,6 +45,8 @@ pub(super) struct Motion<'a> {
     world: Option<World>,
     /// The frame that was drawn before it was simulated.
     drawn: Option<u32>,
+    /// What was said of how it starts, until the first segment keeps it.
+    said: Vec<String>,
     played: Played,
     started: Instant,
 }
@@ -65,6 +67,7 @@ impl<'a> Motion<'a> {
             keep_motion,
             world: None,
             drawn: None,
+            said: Vec::new(),
             played: Played { rows, totals, stopped: false, figure: None, parts, memory: MemoryMetrics::default() },
             started: Instant::now(),
         })
@@ -128,6 +131,7 @@ impl<'a> Motion<'a> {
                 progress(StageName::Picture, index, self.started, self.ready, sink);
             }
         }
+        kept.meta.solver.said.iter().for_each(|w| sink.warning(w));
         self.played.rows.extend(kept.meta.rows.iter().cloned());
         self.played.totals.add(&SolverTotals { seconds: 0.0, ..kept.meta.solver.clone() });
         Ok(())
@@ -153,8 +157,9 @@ impl<'a> Motion<'a> {
             Some(kept) => world.restore(segment.first.saturating_sub(1), &kept.checkpoint()?)?,
             None => {
                 self.draw_captured(&mut world, delivery, sink)?;
-                self.stand(&mut world, delivery, sink, stop)?;
-                world.place(self.spec, self.matter)?.iter().for_each(|w| sink.warning(w));
+                self.said = self.stand(&mut world, delivery, sink, stop)?;
+                self.said.extend(world.place(self.spec, self.matter)?);
+                self.said.iter().for_each(|w| sink.warning(w));
             }
         }
         self.spend("simulate.standing", made);
@@ -176,12 +181,15 @@ impl<'a> Motion<'a> {
         delivery.hasten()
     }
 
-    /// The prestress, from the store or solved: gravity, support and matter decide it, launch and events do not.
-    fn stand(&self, world: &mut World, delivery: &mut Delivery, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
+    /// The prestress, from the store or solved: gravity, support and matter decide it, launch and events do not. What is to
+    /// be said of it.
+    fn stand(&self, world: &mut World, delivery: &mut Delivery, sink: &mut dyn Sink, stop: &Stop) -> Result<Vec<String>, EngineError> {
         if let Some(entry) = pack::find(&self.store, "prestress", &self.ready.prestress)?
             && let Some(state) = pack::read::<u8>(&entry, "state")?
         {
-            return Ok(world.restore(0, &state)?);
+            world.restore(0, &state)?;
+            let said = entry.meta().get("said").and_then(|said| serde_json::from_value(said.clone()).ok());
+            return Ok(said.unwrap_or_default());
         }
         let mut failed = Ok(());
         let mut progress = |share: f32| {
@@ -193,17 +201,16 @@ impl<'a> Motion<'a> {
         };
         let report = world.prestress(self.spec, stop, &mut progress)?;
         failed?;
-        report.warnings.iter().for_each(|w| sink.warning(w));
         if !stop.raised() {
-            delivery.keep_standing(&self.ready.prestress, world.start_checkpoint()?)?;
+            delivery.keep_standing(&self.ready.prestress, world.start_checkpoint()?, report.warnings.clone())?;
         }
-        Ok(())
+        Ok(report.warnings)
     }
 
     /// Simulates one segment and has it kept; returns whether it was stopped on the way.
     fn simulate(&mut self, segment: &Segment, delivery: &mut Delivery, sink: &mut dyn Sink, stop: &Stop) -> Result<bool, EngineError> {
         let Some(mut world) = self.world.take() else { return Ok(false) };
-        let mut totals = SolverTotals::default();
+        let mut totals = SolverTotals { said: std::mem::take(&mut self.said), ..SolverTotals::default() };
         let bytes = (self.bodies.mass_kg.len() * MOTION_WORDS * 4) as u64;
         delivery.begin(segment, if self.keep_motion { bytes as usize } else { 0 });
         let mut stopped = false;

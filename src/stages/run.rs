@@ -63,17 +63,19 @@ pub(super) fn run(
     }
 
     let wants_pictures = options.render;
-    let pictures_kept = wants_pictures && plan.stage(StageName::Picture).is_some_and(|s| s.action == Action::Hit);
+    let pictures_hit = wants_pictures && plan.stage(StageName::Picture).is_some_and(|s| s.action == Action::Hit);
+    let album = if pictures_hit { Album::open(&engine.store, &ready.picture)? } else { None };
     let clock = Instant::now();
-    let figure = if wants_pictures && !pictures_kept { Some(take_figure(engine, spec, &ready, &bound.value, &matter)?) } else { None };
+    let figure = if wants_pictures && album.is_none() { Some(take_figure(engine, spec, &ready, &bound.value, &matter)?) } else { None };
     tracing::debug!("figure made");
     let figure_s = clock.elapsed().as_secs_f64();
-    let done = motion.play(figure, sink, stop)?;
+    let mut done = motion.play(figure, sink, stop)?;
     if let Some(figure) = done.figure {
         engine.figure = Some((ready.keys.bind.clone(), figure));
     }
-    if pictures_kept && !done.stopped {
-        replay_pictures(&engine.store, &ready, sink)?;
+    if let Some(album) = album.filter(|_| !done.stopped) {
+        album.show(sink, stop);
+        done.stopped = stop.raised();
     }
     let total = clock.elapsed().as_secs_f64();
     seconds.insert(StageName::Simulate, done.totals.seconds);
@@ -84,6 +86,7 @@ pub(super) fn run(
     let motion = ready.segments.iter().map(|s| ("motion", s.key.as_str()));
     let made = [("scene", ready.keys.scene.as_str()), ("proxy", &ready.keys.proxy), ("bind", &ready.keys.bind), ("picture", &ready.picture)];
     engine.store.pin("head", made.into_iter().chain(motion).filter(|(stage, key)| engine.store.contains(stage, key)))?;
+    warnings.extend(done.totals.said.iter().cloned());
     let of_forces = summary::of_forces(&done.totals);
     of_forces.iter().for_each(|w| sink.warning(w));
     warnings.extend(of_forces);
@@ -135,20 +138,32 @@ fn take_figure(engine: &mut Engine, spec: &Spec, ready: &Ready, bound: &crate::s
     Ok(figure)
 }
 
-/// Delivers pictures that the store has.
-pub(super) fn replay_pictures(store: &Store, ready: &Ready, sink: &mut dyn Sink) -> Result<(), EngineError> {
-    let Some(entry) = pack::find(store, "picture", &ready.picture)? else { return Ok(()) };
-    let bytes = entry.read("frames")?;
-    let ends: Vec<usize> = entry.meta().get("ends").and_then(|v| serde_json::from_value(v.clone()).ok()).unwrap_or_default();
-    let fps = entry.meta().get("fps").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
-    let mut start = 0;
-    for (index, end) in ends.into_iter().enumerate() {
-        let Some(png) = bytes.get(start..end) else { break };
-        start = end;
-        let Ok(picture) = crate::export::decode_png(png) else { break };
-        let index = index as u32;
-        let (size, rgba8) = (picture.size, picture.rgba8.into());
-        sink.frame(Frame { index, time_s: f64::from(index) / fps, size, rgba8, png: png.into(), depth: None, id: None });
+/// Pictures that the store has.
+pub(super) struct Album {
+    /// One PNG after another, and where each ends.
+    bytes: Vec<u8>,
+    ends: Vec<usize>,
+    fps: f64,
+}
+
+impl Album {
+    /// None where they are not kept, or are damaged.
+    pub fn open(store: &Store, key: &str) -> Result<Option<Album>, EngineError> {
+        let Some(entry) = pack::find(store, "picture", key)? else { return Ok(None) };
+        let Some(bytes) = pack::read::<u8>(&entry, "frames")? else { return Ok(None) };
+        let ends = entry.meta().get("ends").and_then(|v| serde_json::from_value(v.clone()).ok()).unwrap_or_default();
+        let fps = entry.meta().get("fps").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
+        Ok(Some(Album { bytes, ends, fps }))
     }
-    Ok(())
+
+    /// Delivers them.
+    pub fn show(&self, sink: &mut dyn Sink, stop: &Stop) {
+        let starts = std::iter::once(0).chain(self.ends.iter().copied());
+        for (index, (start, &end)) in (0u32..).zip(starts.zip(&self.ends)).take_while(|_| !stop.raised()) {
+            let Some(png) = self.bytes.get(start..end) else { break };
+            let Ok(picture) = crate::export::decode_png(png) else { break };
+            let (size, rgba8) = (picture.size, picture.rgba8.into());
+            sink.frame(Frame { index, time_s: f64::from(index) / self.fps, size, rgba8, png: png.into(), depth: None, id: None });
+        }
+    }
 }

@@ -62,6 +62,9 @@ pub(super) struct SolverTotals {
     pub retries: u32,
     pub nonfinite: u64,
     pub softened: Vec<String>,
+    /// What is to be known of how it starts: that it does not quite balance, that it starts elsewhere than the spec says.
+    #[serde(default)]
+    pub said: Vec<String>,
     /// How often each force gave no number, by name.
     #[serde(default)]
     pub undefined: BTreeMap<String, u64>,
@@ -90,9 +93,11 @@ impl SolverTotals {
         for (name, times) in &later.undefined {
             *self.undefined.entry(name.clone()).or_default() += times;
         }
-        for text in &later.softened {
-            if !self.softened.contains(text) {
-                self.softened.push(text.clone());
+        for (ours, theirs) in [(&mut self.softened, &later.softened), (&mut self.said, &later.said)] {
+            for text in theirs {
+                if !ours.contains(text) {
+                    ours.push(text.clone());
+                }
             }
         }
     }

@@ -8,6 +8,7 @@ use crate::render::View;
 use crate::solver::{Advance, Taut};
 use crate::spec::expect::Condition;
 use crate::spec::{Event, Spec, limits};
+use crate::world::ObjectFacts;
 use crate::world::bodies::Matter;
 use crate::world::measure::Row;
 use std::collections::BTreeMap;
@@ -84,6 +85,7 @@ pub(super) fn metrics(
     gpu: &Gpu,
 ) -> Metrics {
     let fps = spec.time.fps;
+    let facts = ready.prepared.value.object_facts(spec);
     let duration_s = rows.len().saturating_sub(1) as f64 / f64::from(fps);
     let mut metrics = Metrics {
         version: String::new(),
@@ -108,7 +110,7 @@ pub(super) fn metrics(
         resolved: resolved(spec, ready, matter),
         seconds,
         memory: MemoryMetrics::default(),
-        objects: spec.objects.iter().enumerate().map(|(i, o)| (o.name.clone(), object(spec, ready, matter, rows, i))).collect(),
+        objects: spec.objects.iter().zip(&facts).enumerate().map(|(i, (o, facts))| (o.name.clone(), object(facts, matter, rows, i, fps))).collect(),
         events: events(spec, totals, duration_s),
         expect: Vec::new(),
     };
@@ -128,10 +130,9 @@ fn resolved(spec: &Spec, ready: &Ready, matter: &Matter) -> serde_json::Map<Stri
     values
 }
 
-fn object(spec: &Spec, ready: &Ready, matter: &Matter, rows: &[Vec<Row>], index: usize) -> ObjectMetrics {
+fn object(facts: &ObjectFacts, matter: &Matter, rows: &[Vec<Row>], index: usize, fps: u32) -> ObjectMetrics {
     let column = |pick: fn(&Row) -> f64| rows.iter().map(|r| pick(&r[index])).collect::<Vec<f64>>();
     let range = matter.bodies.ranges[index].clone();
-    let facts = &ready.prepared.value.object_facts(spec)[index];
     let particles = &matter.particles.position_m[range.clone()];
     let lowest = particles.iter().map(|p| f64::from(p.z)).fold(f64::INFINITY, f64::min);
     let mut metrics = ObjectMetrics {
@@ -152,7 +153,7 @@ fn object(spec: &Spec, ready: &Ready, matter: &Matter, rows: &[Vec<Row>], index:
         gap_m: column(|r| r.gap_m),
         impacts_s: Vec::new(),
     };
-    metrics.impacts_s = metrics.impacts_s(lowest - facts.support_m, facts.height_m(), spec.time.fps);
+    metrics.impacts_s = metrics.impacts_s(lowest - facts.support_m, facts.height_m(), fps);
     metrics
 }
 

@@ -78,7 +78,7 @@ impl Store {
             }
         }
         // Single files are written under the lock, which is ours now.
-        for path in children(guard.dir())? {
+        for path in children(guard.dir())?.into_iter().chain(children(&self.dir().join("pins"))?) {
             if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(atomic::TEMP)) {
                 fs::remove_file(&path).map_err(StoreError::io("removed", &path))?;
             }

@@ -147,9 +147,11 @@ fn what_dead_processes_left_is_swept_and_the_living_are_spared() {
     fs::write(tmp.join("1-1/blob"), b"half").unwrap();
     fs::create_dir_all(tmp.join("1-2/gone")).unwrap();
     fs::write(store.dir().join(".tmp-1-3"), b"half").unwrap();
+    fs::create_dir_all(store.dir().join("pins")).unwrap();
+    fs::write(store.dir().join("pins/.tmp-1-4"), b"half").unwrap();
     let again = Store::open(None, home.path()).unwrap();
     assert_eq!(leftovers(&again), 1);
-    assert!(!store.dir().join(".tmp-1-3").exists());
+    assert!(!store.dir().join(".tmp-1-3").exists() && !store.dir().join("pins/.tmp-1-4").exists());
     living.finish(json!(null)).unwrap();
     assert!(again.contains("scene", "k"));
 }

@@ -21,7 +21,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     let mut conversation = setup::converse(arguments.scene.as_deref(), flags, |session| Some(setup::default_out(flags, session)))?;
     // The scene of a new session already has the `--set` edits; an old one gets them as a turn.
-    let edits = if conversation.session().head().is_some() { setup::edits(flags)? } else { Vec::new() };
+    let edits = if conversation.resumed { setup::edits(flags)? } else { Vec::new() };
     let stop = Stop::default();
     let _guard = signals::stop_on_signal(&stop);
     let (code, broken) = if flags.json {
@@ -34,11 +34,14 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     if broken { Err(Failure::silent(Kind::Pipe)) } else { Failure::from_code(code) }
 }
 
-/// All turns, until one is stopped: first the edits, if there are any, then the prompts. The first
-/// exit code that is not 0.
+/// All turns, until one is stopped: first the edits, if there are any, then the prompts; where there is neither, the
+/// scene as it starts. The first exit code that is not 0.
 pub fn turns(conversation: &mut Conversation, edits: Vec<Edit>, prompts: &[String], listener: &mut dyn Listener, stop: &Stop) -> u8 {
     conversation.open(listener);
     let mut first = 0;
+    if edits.is_empty() && prompts.is_empty() {
+        return conversation.run_base("as it starts", listener, stop).exit_code;
+    }
     if !edits.is_empty() {
         let words = edits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         first = conversation.edit(&words, edits, listener, stop).exit_code;

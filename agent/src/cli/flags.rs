@@ -63,7 +63,7 @@ pub struct Flags {
 /// `--quality`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum QualityFlag {
-    /// 32 cells along the longest side, 640x360
+    /// 24 cells along the longest side, 640x360
     Draft,
     /// 64 cells along the longest side, 1280x720
     Full,

@@ -23,8 +23,8 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     let mut engine = setup::engine(flags, store.clone());
     engine.open_ahead();
     engine.facts(&spec, Path::new(""), &flags.run_options())?;
-    let mut session = Session::start(&store, flags.session.as_deref(), spec.clone())?;
-    session.commit(&format!("run {}", arguments.spec.display()), &[], &spec)?;
+    let session = Session::start(&store, flags.session.as_deref(), spec)?;
+    let words = format!("run {}", arguments.spec.display());
     let out = setup::default_out(flags, session.name());
     let name = session.name().to_owned();
     let mut conversation = Conversation::new(engine, session, flags.run_options(), Some(out.clone()), flags.cpu);
@@ -33,7 +33,7 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     let _guard = signals::stop_on_signal(&stop);
     if flags.json {
         let mut collector = Collector::default();
-        let outcome = conversation.run_head(&mut collector, &stop);
+        let outcome = conversation.run_base(&words, &mut collector, &stop);
         let version = outcome.version.unwrap_or_default();
         let metrics: Option<Value> = std::fs::read(out.join(&version).join("metrics.json")).ok().and_then(|b| serde_json::from_slice(&b).ok());
         output::json(&json!({
@@ -44,7 +44,7 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     }
     let mut teller = Teller::new(flags.quiet, &stop);
     conversation.open(&mut teller);
-    let outcome = conversation.run_head(&mut teller, &stop);
+    let outcome = conversation.run_base(&words, &mut teller, &stop);
     if teller.broken { Err(Failure::silent(Kind::Pipe)) } else { Failure::from_code(outcome.exit_code) }
 }
 

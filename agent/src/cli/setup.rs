@@ -84,8 +84,9 @@ pub fn converse(scene: Option<&str>, flags: &Flags, out: impl Fn(&str) -> Option
     let known = flags.session.as_ref().is_some_and(|name| Session::exists(&store, name).is_ok_and(|known| known));
     let mut engine = engine(flags, store.clone());
     engine.open_ahead();
+    let resumed = flags.resume || known;
     let session = match scene {
-        _ if flags.resume || known => resumed(scene, flags, &store)?,
+        _ if resumed => old_session(scene, flags, &store)?,
         Some(scene) => {
             let spec = spec_of(scene, flags)?;
             engine.facts(&spec, Path::new(""), &flags.run_options())?;
@@ -95,12 +96,12 @@ pub fn converse(scene: Option<&str>, flags: &Flags, out: impl Fn(&str) -> Option
     };
     let out = out(session.name());
     let mut conversation = Conversation::new(engine, session, flags.run_options(), out, flags.cpu);
-    conversation.details = flags.verbose;
+    (conversation.details, conversation.resumed) = (flags.verbose, resumed);
     Ok(conversation)
 }
 
 /// An old session, which must be about the scene that was named, if one was.
-fn resumed(scene: Option<&str>, flags: &Flags, store: &Store) -> Result<Session, Failure> {
+fn old_session(scene: Option<&str>, flags: &Flags, store: &Store) -> Result<Session, Failure> {
     let session = session(flags, store)?;
     let asked = scene.map(|s| spec_of(s, &Flags::default())).transpose()?;
     let same = |asked: &Spec| {

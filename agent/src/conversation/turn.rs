@@ -27,6 +27,8 @@ pub struct Conversation {
     warned: BTreeSet<String>,
     /// Whether runs tell where their time and memory went.
     pub details: bool,
+    /// Whether its session was there before.
+    pub resumed: bool,
 }
 
 /// How a turn ended.
@@ -42,7 +44,18 @@ impl Conversation {
     /// Goes on with a session.
     pub fn new(engine: Engine, session: Session, options: RunOptions, out: Option<PathBuf>, asked_for_cpu: bool) -> Conversation {
         let options = RunOptions { camera: session.camera(), ..options };
-        Conversation { engine, session, options, out, turns: 0, asked_for_cpu, said_device: false, warned: BTreeSet::new(), details: false }
+        Conversation {
+            engine,
+            session,
+            options,
+            out,
+            turns: 0,
+            asked_for_cpu,
+            said_device: false,
+            warned: BTreeSet::new(),
+            details: false,
+            resumed: false,
+        }
     }
 
     /// Its session.
@@ -100,17 +113,14 @@ impl Conversation {
         end(result, listener)
     }
 
-    /// Runs the newest version as it is, without a turn of its own: for a spec that was just taken over.
-    pub fn run_head(&mut self, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
-        self.turns += 1;
-        let result = match self.session.head().cloned() {
-            Some(version) => {
-                listener.event(Event::TurnStarted { turn: self.turns, text: version.words.clone() });
-                listener.event(Event::SpecEdited { from: None, to: version.name.clone(), edits: Vec::new(), changes: Vec::new() });
-                self.run(&version, None, listener, stop)
-            }
-            None => Err(Failure::other("this session has no version yet")),
-        };
+    /// Makes a version of the spec as it is, without an edit, and runs it.
+    pub fn run_base(&mut self, words: &str, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
+        self.begin(words, listener);
+        let spec = self.session.spec().clone();
+        let result = self.session.commit(words, &[], &spec).map_err(Failure::from).and_then(|version| {
+            listener.event(Event::SpecEdited { from: None, to: version.name.clone(), edits: Vec::new(), changes: Vec::new() });
+            self.run(&version, None, listener, stop)
+        });
         end(result, listener)
     }
 

@@ -48,8 +48,8 @@ pub enum Message {
 pub struct Options {
     /// How pictures reach the terminal.
     pub graphics: Graphics,
-    /// The first thing said, if any.
-    pub prompt: Option<String>,
+    /// What is entered first, one line each.
+    pub lines: Vec<String>,
     /// Opens the window beside the REPL.
     pub window: Box<dyn Fn() -> Result<Child, Failure>>,
 }
@@ -77,7 +77,7 @@ pub fn run(conversation: Conversation, store: &Store, options: Options) -> Resul
     read_keys(post)?;
     let mut desk = Desk { ask, brake, store: store.clone(), session, window: Window { open: options.window, child: None } };
     let mut first = app.open();
-    first.extend(options.prompt.map(|p| app.enter(p, Instant::now())).unwrap_or_default());
+    first.extend(options.lines.into_iter().flat_map(|line| app.enter(line, Instant::now())));
     let result = attend(&mut app, &mut screen, &inbox, &mut desk, first);
     drop(screen);
     // The engine ends at its next batch: the stop flag is up, and there is nobody left to ask. It is
