@@ -33,11 +33,20 @@ fn linear_strain(tau: mat3x3<f32>, mu: f32, lambda: f32) -> mat3x3<f32> {
     return strain;
 }
 
+fn widest(m: mat3x3<f32>) -> f32 {
+    let column = max(max(abs(m[0]), abs(m[1])), abs(m[2]));
+    return max(max(column.x, column.y), column.z);
+}
+
 // Stretch that carries a stress, from one that carries nearly that: the linear compliance, repeated.
+// No solid carries any pressure: where it is more than this one bears, the stretch stops at a bound,
+// with what it bears there.
 fn carry(start: mat3x3<f32>, wanted: mat3x3<f32>, mu: f32, lambda: f32, s: Substance) -> mat3x3<f32> {
+    let unit = mat3x3<f32>(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(0.0, 0.0, 1.0));
     var f = start;
     for (var k = 0u; k < CARRY_STEPS; k++) {
-        f += CARRY_SHARE * linear_strain(wanted - resting_stress(s, f, mu, lambda), mu, lambda);
+        let strain = f - unit + CARRY_SHARE * linear_strain(wanted - resting_stress(s, f, mu, lambda), mu, lambda);
+        f = unit + strain * min(1.0, CARRY_MOST / max(widest(strain), CARRY_MOST));
     }
     return f;
 }

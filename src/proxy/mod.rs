@@ -16,6 +16,7 @@ mod nearest;
 mod sample;
 mod sections;
 mod thicken;
+mod way;
 mod young;
 
 #[cfg(test)]
@@ -30,7 +31,7 @@ use body::Body;
 use glam::Vec3;
 
 /// Version of this room, for stage keys.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 /// Share of the solid whose loss is worth a warning.
 const NOTABLE_SHARE: f64 = 1e-3;
 

@@ -1,10 +1,13 @@
 //! `young_pa = "auto"`: soft enough to be seen moving, stiff enough that the captured thing stands.
 //!
 //! A column of volume V and height h stands under its own weight while V h^2 <= 7.84 E I / (rho g),
-//! which for a round one of radius r is h^3 <= 7.84 E r^2 / (4 rho g) (Greenhill 1881). Every horizontal
-//! cut leaves parts standing above it ([`sections`]); each part's sections, which bend on their own,
-//! give its bound, and the object gets [`SAFETY`] times the largest bound of its major parts. Slender
-//! details that need more, a thin shoot or the stems of a bouquet, get it for themselves.
+//! which for a round one of radius r is h^3 <= 7.84 E r^2 / (4 rho g) (Greenhill 1881). A stem that reaches
+//! out sideways as far bends at its tip by V h^2 rho g / (6 E I), and twists out of its plane at some 1.3 times
+//! Greenhill's bound (Prandtl 1899): what it takes for one, with the safety factor, does for the other, and
+//! lets it bend by a third of a radian. Every cut across the way from the base leaves parts that hang on it
+//! ([`sections`]); each part gives its sections' bound, and the object gets [`SAFETY`] times the largest bound
+//! of its major parts. Slender details that need more, a thin shoot, a tendril or the stems of a bouquet, get it
+//! for themselves.
 
 use super::grid::Grid;
 use super::sections::{Cut, Sections};
@@ -75,9 +78,9 @@ pub fn young_auto(stance: &Stance, density_kg_m3: f64) -> YoungAuto {
     YoungAuto { value_pa, local, warnings: warnings(value_pa, needed_pa), notes: notes(value_pa, &needs) }
 }
 
-/// Greenhill's bound of what stands on a cut, with the safety factor, over its weight.
+/// Greenhill's bound of what a cut carries, with the safety factor, over its weight.
 fn column_m(cut: &Cut) -> f64 {
-    SAFETY * cut.volume_m3 * cut.height_m.powi(2) / (7.84 * cut.moment_m4)
+    SAFETY * cut.volume_m3 * cut.reach_m.powi(2) / (7.84 * cut.moment_m4)
 }
 
 fn warnings(value_pa: f64, needed_pa: f64) -> Vec<String> {

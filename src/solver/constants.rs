@@ -61,6 +61,8 @@ pub const RELEASE: f32 = 0.02;
 pub const CARRY_STEPS: u32 = 32;
 /// See [`CARRY_STEPS`].
 pub const CARRY_SHARE: f32 = 0.6;
+/// Largest entry of F - I that the search comes to.
+pub const CARRY_MOST: f32 = 0.45;
 /// Pseudo mass, in fixed-point units, below which a node of the prestress counts as this heavy: a
 /// thousandth of the heaviest particle's.
 pub const LIGHTEST: f32 = 65_536.0;
@@ -246,6 +248,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("LIGHTEST", Constant::F32(LIGHTEST)),
         ("CARRY_STEPS", Constant::U32(CARRY_STEPS)),
         ("CARRY_SHARE", Constant::F32(CARRY_SHARE)),
+        ("CARRY_MOST", Constant::F32(CARRY_MOST)),
         ("MOST_LAYERS", Constant::U32(MOST_LAYERS)),
         ("MEETING_ROUNDS", Constant::U32(MEETING_ROUNDS)),
         ("FAINT_SLOPE", Constant::F32(FAINT_SLOPE)),

@@ -1,7 +1,7 @@
 //! The search for the prestress: one system of conjugate gradients in f64.
 
 use super::{Grid, Surroundings, gather, p2g};
-use crate::solver::constants::{CARRY_SHARE, CARRY_STEPS};
+use crate::solver::constants::{CARRY_MOST, CARRY_SHARE, CARRY_STEPS};
 use crate::solver::state::ParticleState;
 use glam::{DMat3, DVec3, Vec3};
 use std::collections::BTreeMap;
@@ -75,6 +75,8 @@ pub fn adopted(state: &ParticleState, solution: &Field, around: &Surroundings) -
         let missing = wanted - law(f);
         let trace = missing.col(0).x + missing.col(1).y + missing.col(2).z;
         let answer = missing * (0.5 / mu) - DMat3::IDENTITY * (trace * 0.5 * lambda / (mu * (3.0 * lambda + 2.0 * mu)));
-        f + answer * f64::from(CARRY_SHARE)
+        let strain = f - DMat3::IDENTITY + answer * f64::from(CARRY_SHARE);
+        let widest = strain.to_cols_array().iter().fold(f64::from(CARRY_MOST), |a, b| a.max(b.abs()));
+        DMat3::IDENTITY + strain * (f64::from(CARRY_MOST) / widest)
     })
 }
