@@ -20,7 +20,7 @@ mod way;
 mod young;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use nearest::nearest;
 pub use young::{Stance, YoungAuto, young_auto};
@@ -29,6 +29,7 @@ use crate::scene::{Gaussians, morton_order};
 use crate::spec::ProxyKind;
 use body::Body;
 use glam::Vec3;
+use sections::Sections;
 
 /// Version of this room, for stage keys.
 pub const VERSION: u32 = 5;
@@ -67,6 +68,8 @@ pub struct Solid {
     pub volume_total_m3: f32,
     /// How stiff it has to be to stand.
     pub stance: Stance,
+    /// Gaussians of threads too slender to be matter, and where each thread ends on the solid, world frame.
+    pub hung: Vec<(u32, Vec3)>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -129,21 +132,27 @@ struct Shape {
     density: density::Density,
     /// Whether each voxel belongs to the solid.
     solid: Vec<bool>,
+    sections: Sections,
     joined: join::Joined,
+    threads: usize,
 }
 
-/// The solid of an object's Gaussians: shell, what it encloses, loose pieces joined, nothing thinner than the Gaussians' spacing.
+/// The solid of an object's Gaussians: shell, what it encloses, loose pieces joined, nothing thinner than the
+/// Gaussians' spacing, no thread that could not stand.
 fn shape(gaussians: &Gaussians, ground_m: f32) -> Result<Shape, ProxyError> {
     let density = density::rasterise(gaussians, ground_m, fill::CLOSING_SPACINGS)?;
     let mut solid = fill::solid(&density.grid, &density.occupied, density.spacing_m);
     let joined = join::join(&density.grid, &mut solid, density.spacing_m);
     thicken::thicken(&density.grid, &mut solid);
-    Ok(Shape { density, solid, joined })
+    let mut sections = Sections::find(&density.grid, &solid);
+    let threads = young::let_go_of_threads(&mut sections);
+    sections.clear(&mut solid);
+    Ok(Shape { density, solid, sections, joined, threads })
 }
 
 /// Makes a solid of an object's Gaussians and fills it with particles.
 pub fn build(request: &ProxyRequest) -> Result<Solid, ProxyError> {
-    let Shape { density, mut solid, mut joined } = shape(request.gaussians, request.ground_m)?;
+    let Shape { density, mut solid, sections, mut joined, mut threads } = shape(request.gaussians, request.ground_m)?;
     let spacing_m = 0.5 * request.cell_m;
     let extent_m = density.grid.size.as_vec3().max_element() * density.grid.voxel_m;
     let cell_error = ProxyError::Cell { cell_m: request.cell_m, extent_m };
@@ -151,25 +160,28 @@ pub fn build(request: &ProxyRequest) -> Result<Solid, ProxyError> {
         return Err(cell_error);
     }
     // The thing stands as what it is, whatever it is simulated as.
-    let stance = young::stance(request.gaussians, &density.grid, &solid);
+    let stance = young::stance(request.gaussians, &density.grid, &sections);
+    let mut hung = hung(request.gaussians, &density.grid, &sections);
     if request.kind == ProxyKind::Hull {
         solid = hull::solid(&density.grid, request.gaussians)?;
-        joined = join::Joined::default();
+        (joined, threads) = Default::default();
+        hung.clear();
     }
     let skin_m = density.spacing_m;
-    let warnings = warnings(density.wide, &joined);
+    let mut warnings = warnings(density.wide, &joined);
+    warnings.extend((threads > 0).then(|| hanging(threads, hung.len(), request.gaussians.len())));
     let reach_m = sample::reach_m(spacing_m, density.grid.voxel_m).max(skin_m);
     let body = Body::new(density.grid, &solid, reach_m);
     let samples = sample::sample(&body, spacing_m, request.seed).ok_or(cell_error)?;
     if samples.is_empty() {
         return Err(ProxyError::Empty { gaussians: request.gaussians.len() });
     }
-    Ok(Solid { stance, warnings, ..finish(&body, &samples, spacing_m, skin_m) })
+    Ok(Solid { stance, hung, warnings, ..finish(&body, &samples, spacing_m, skin_m) })
 }
 
 /// How stiff the thing has to be to stand, known before a solid is made of it; nothing where its Gaussians make none.
 pub fn stance_of(gaussians: &Gaussians, ground_m: f32) -> Stance {
-    shape(gaussians, ground_m).map(|shape| young::stance(gaussians, &shape.density.grid, &shape.solid)).unwrap_or_default()
+    shape(gaussians, ground_m).map(|shape| young::stance(gaussians, &shape.density.grid, &shape.sections)).unwrap_or_default()
 }
 
 /// Orders the samples along a Morton curve and shares the body's volume among them.
@@ -187,8 +199,20 @@ fn finish(body: &Body, samples: &[sample::Sample], spacing_m: f32, skin_m: f32) 
         spacing_m,
         volume_total_m3: body.volume_m3 as f32,
         stance: Stance::default(),
+        hung: Vec::new(),
         warnings: Vec::new(),
     }
+}
+
+/// The Gaussians of threads that were let go of, and where each hangs.
+fn hung(gaussians: &Gaussians, grid: &grid::Grid, sections: &Sections) -> Vec<(u32, Vec3)> {
+    let at = |(i, &p): (usize, &Vec3)| Some((i as u32, sections.hung_at(grid, sections.at(grid, p)?)?));
+    gaussians.mean.iter().enumerate().filter_map(at).collect()
+}
+
+fn hanging(threads: usize, gaussians: usize, of: usize) -> String {
+    let share = 100.0 * gaussians as f32 / of as f32;
+    format!("{threads} threads too slender to carry themselves ({share:.1} % of the Gaussians) have no particles of their own and follow what they hang on")
 }
 
 fn warnings(wide: usize, joined: &join::Joined) -> Vec<String> {

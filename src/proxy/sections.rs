@@ -8,13 +8,15 @@
 
 use super::grid::Grid;
 use super::way::{self, STEP};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, IVec3, Vec3};
 use std::f64::consts::PI;
 
 /// No section.
 const NONE: u32 = u32::MAX;
 /// A cut is averaged over this share of the reach of what it carries: a narrower spot is too short to bend.
 const CUT_SHARE: f64 = 0.1;
+/// A point belongs to the nearest section within this many voxels.
+const NEAR_VOXELS: i32 = 3;
 
 /// The sections of all layers, farthest layer first.
 pub(super) struct Sections {
@@ -24,6 +26,8 @@ pub(super) struct Sections {
     sections: Vec<Section>,
     /// First section of each layer, farthest layer first, and the end.
     layers: Vec<usize>,
+    /// The voxels around one, nearest first.
+    near: Vec<IVec3>,
 }
 
 /// Lengths in voxels.
@@ -37,6 +41,8 @@ struct Section {
     moment: f64,
     /// Sections farther on that touch it.
     beyond: Vec<u32>,
+    /// For one that is left out: the centre of the cut that it hung on.
+    hung_at: Option<DVec3>,
 }
 
 /// A part of the solid from one cut on.
@@ -71,7 +77,8 @@ impl Sections {
             layers.resize_with(layers.len().max(layer + 1), Vec::new);
             layers[layer].push(voxel);
         }
-        let mut found = Sections { voxel_m: f64::from(grid.voxel_m), of: vec![NONE; grid.len()], sections: Vec::new(), layers: vec![0] };
+        let of = vec![NONE; grid.len()];
+        let mut found = Sections { voxel_m: f64::from(grid.voxel_m), of, sections: Vec::new(), layers: vec![0], near: around_nearest_first() };
         for (layer, voxels) in layers.iter().rev().enumerate() {
             for &seed in voxels {
                 if found.of[seed as usize] == NONE {
@@ -105,7 +112,7 @@ impl Sections {
         let sum = places().sum::<DVec3>();
         let centre = sum / voxels.len() as f64;
         let moment = second_moment(places().map(|p| p - centre), voxels.len() as f64);
-        self.sections.push(Section { layer, voxels: voxels.len() as f64, sum, moment, beyond });
+        self.sections.push(Section { layer, voxels: voxels.len() as f64, sum, moment, beyond, hung_at: None });
     }
 
     /// How many there are.
@@ -115,18 +122,50 @@ impl Sections {
 
     /// Volume of the solid, cubic metres.
     pub fn volume_m3(&self) -> f64 {
-        self.sections.iter().map(|s| s.voxels).sum::<f64>() * self.voxel_m.powi(3)
+        self.sections.iter().filter(|s| s.hung_at.is_none()).map(|s| s.voxels).sum::<f64>() * self.voxel_m.powi(3)
     }
 
-    /// The section at a point, or in the voxels around it.
+    /// Leaves out the sections of a cut and all that hangs on them.
+    pub fn leave_out(&mut self, cut: &Cut) {
+        let own = cut.sections.iter().map(|&id| &self.sections[id as usize]);
+        let (voxels, sum) = own.fold((0.0, DVec3::ZERO), |(n, sum), s| (n + s.voxels, sum + s.sum));
+        let mut next = cut.sections.clone();
+        while let Some(id) = next.pop() {
+            let section = &mut self.sections[id as usize];
+            if section.hung_at.is_none() {
+                section.hung_at = Some(sum / voxels);
+                next.extend(&section.beyond);
+            }
+        }
+    }
+
+    /// Whether a section is left out.
+    pub fn is_out(&self, section: u32) -> bool {
+        self.sections[section as usize].hung_at.is_some()
+    }
+
+    /// Where a section that is left out hung, metres.
+    pub fn hung_at(&self, grid: &Grid, section: u32) -> Option<Vec3> {
+        self.sections[section as usize].hung_at.map(|at| grid.low + (at.as_vec3() + 0.5) * grid.voxel_m)
+    }
+
+    /// Takes what is left out off the solid; how many voxels there were.
+    pub fn clear(&self, solid: &mut [bool]) -> usize {
+        let out = |&id: &u32| id != NONE && self.is_out(id);
+        let mut cleared = 0;
+        solid.iter_mut().zip(&self.of).filter(|(_, id)| out(id)).for_each(|(s, _)| {
+            *s = false;
+            cleared += 1;
+        });
+        cleared
+    }
+
+    /// The section at a point, or the nearest one close by.
     pub fn at(&self, grid: &Grid, point: Vec3) -> Option<u32> {
-        let offsets = (0..27).map(|i| Vec3::new((i % 3 - 1) as f32, (i / 3 % 3 - 1) as f32, (i / 9 - 1) as f32));
-        let mut around = offsets.map(|o| point + o * grid.voxel_m).filter(|p| (*p - grid.low).cmpge(Vec3::ZERO).all());
-        let found = |p: Vec3| {
-            let voxel = ((p - grid.low) / grid.voxel_m).as_uvec3();
-            voxel.cmplt(grid.size).all().then(|| self.of[grid.index(voxel)]).filter(|&s| s != NONE)
-        };
-        found(point).or_else(|| around.find_map(found))
+        let voxel = ((point - grid.low) / grid.voxel_m).floor().as_ivec3();
+        let size = grid.size.as_ivec3();
+        let around = self.near.iter().map(|&o| voxel + o).filter(|v| v.cmpge(IVec3::ZERO).all() && v.cmplt(size).all());
+        around.map(|v| self.of[grid.index(v.as_uvec3())]).find(|&s| s != NONE)
     }
 
     /// The part from each cut on, farthest cuts first.
@@ -136,10 +175,10 @@ impl Sections {
         let mut seen = vec![NONE; self.count()];
         let mut cuts = Vec::new();
         for layer in self.layers.windows(2) {
-            let sections = layer[0]..layer[1];
+            let sections = (layer[0]..layer[1]).filter(|&id| !self.is_out(id as u32));
             for id in sections.clone() {
                 let mut part = Part { voxels: self.sections[id].voxels, sum: self.sections[id].sum };
-                for &beyond in &self.sections[id].beyond {
+                for &beyond in self.sections[id].beyond.iter().filter(|&&b| !self.is_out(b)) {
                     let root = root(&mut parents, beyond);
                     if root != id as u32 {
                         part.voxels += parts[root as usize].voxels;
@@ -171,6 +210,7 @@ impl Sections {
         while let Some(id) = next.pop() {
             let section = &self.sections[id as usize];
             if let Some(moment) = moments.get_mut(last - section.layer)
+                && !self.is_out(id)
                 && std::mem::replace(&mut seen[id as usize], group[0]) != group[0]
             {
                 *moment += section.moment;
@@ -186,6 +226,15 @@ impl Sections {
             moment_m4: layers / compliance * self.voxel_m.powi(4),
         }
     }
+}
+
+/// Steps to the voxels around one and to itself, nearest first.
+fn around_nearest_first() -> Vec<IVec3> {
+    let side = 2 * NEAR_VOXELS + 1;
+    let step = |k: i32| IVec3::new(k % side, k / side % side, k / (side * side)) - NEAR_VOXELS;
+    let mut steps: Vec<IVec3> = (0..side * side * side).map(step).filter(|o| o.length_squared() <= NEAR_VOXELS * NEAR_VOXELS).collect();
+    steps.sort_by_key(|o| o.length_squared());
+    steps
 }
 
 /// Least second moment of area of a section of voxels about their centre. The section is thin: the least

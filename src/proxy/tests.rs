@@ -355,3 +355,36 @@ fn captured_things_come_out_solid_at_draft_and_full() {
         assert!(young.contains(&auto.value_pa), "{name}: {}", auto.value_pa);
     }
 }
+
+/// A pot that a stout stem and a long thin tendril reach out from, Gaussians 8 mm apart; the tendril's are the last ones.
+pub(crate) fn pot_with_a_tendril() -> (Gaussians, usize) {
+    let mut points = tube(0.1, Vec3::ZERO, 0.12, 0.008);
+    points.extend(disc(0.1, Vec3::Z * 0.12, 0.008));
+    let stem = (0..40 * 16).map(|i| Vec3::new(-0.03 + 0.006 * (i % 4) as f32, -0.009 + 0.006 * (i / 4 % 4) as f32, 0.12 + 0.004 * (i / 16) as f32));
+    points.extend(stem);
+    let start = points.len();
+    // Up, over, and sideways out of its plane.
+    let along = (0..180).map(|i| i as f32 / 180.0);
+    points.extend(along.map(|t| Vec3::new(0.03 + 0.25 * t, 0.1 * (4.0 * t).sin() * t, 0.12 + 0.12 * (3.0 * t).sin())));
+    (skin(points, 0.004), start)
+}
+
+#[test]
+fn threads_that_no_stiffness_holds_are_no_matter_and_follow_what_they_hang_on() {
+    let (pot, start) = pot_with_a_tendril();
+    let [draft, full] = [0.03, 0.015].map(|cell_m| solid(&pot, 0.0, cell_m, ProxyKind::Voxel));
+    for solid in [&draft, &full] {
+        assert_eq!(inside(solid, Vec3::new(0.13, -0.3, 0.0), Vec3::ONE), 0, "the tendril is matter: {:?}", solid.warnings);
+        assert!(inside(solid, Vec3::new(-0.05, -0.03, 0.2), Vec3::new(0.0, 0.03, 0.3)) > 10, "the stem is none");
+        assert!(solid.warnings.iter().any(|w| w.starts_with("1 threads")), "{:?}", solid.warnings);
+    }
+    assert_eq!(draft.hung, full.hung);
+    let hung: Vec<u32> = draft.hung.iter().map(|h| h.0).collect();
+    assert!((start as u32 + 20..start as u32 + 180).all(|i| hung.contains(&i)) && hung.iter().all(|&i| i as usize >= start - 5), "{hung:?}");
+    assert!(draft.hung.iter().all(|h| h.1.distance(Vec3::new(0.035, 0.0, 0.13)) < 0.03), "{:?}", draft.hung[0]);
+    // What stays can be made to stand, and a hull holds everything.
+    let auto = young_auto(&full.stance, 1000.0);
+    assert!(auto.local.iter().all(|&e| e <= 2e6));
+    let whole = solid(&pot, 0.0, 0.015, ProxyKind::Hull);
+    assert!(whole.hung.is_empty() && whole.warnings.is_empty(), "{:?}", whole.warnings);
+}

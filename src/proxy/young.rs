@@ -23,6 +23,11 @@ const RANGE_PA: (f64, f64) = (5e4, 8e5);
 const LOCAL_MOST_PA: f64 = 2e6;
 /// Share of the solid from which a part is a major one.
 const MAJOR_SHARE: f64 = 0.02;
+/// What needs more than this over its weight is a thread: [`LOCAL_MOST_PA`] at the density of water.
+const THREAD_M: f64 = LOCAL_MOST_PA / (1000.0 * CAPTURE_GRAVITY_M_S2);
+/// And more than this over its reach too, whatever the scale of the scene: a square stem nine times as long as
+/// thick.
+const THREAD_SLENDERNESS: f64 = 500.0;
 /// A local value within this factor of the object's is not worth a difference.
 const NOTABLE: f64 = 1.05;
 
@@ -50,8 +55,7 @@ pub struct YoungAuto {
 }
 
 /// Measures the solid that an object's Gaussians make.
-pub(super) fn stance(gaussians: &Gaussians, grid: &Grid, solid: &[bool]) -> Stance {
-    let sections = Sections::find(grid, solid);
+pub(super) fn stance(gaussians: &Gaussians, grid: &Grid, sections: &Sections) -> Stance {
     let total_m3 = sections.volume_m3();
     let mut whole_m = 0.0f64;
     let mut of_section = vec![0.0f64; sections.count()];
@@ -76,6 +80,26 @@ pub fn young_auto(stance: &Stance, density_kg_m3: f64) -> YoungAuto {
     let needs: Vec<f64> = stance.local_m.iter().map(|&m| weight_n_m3 * f64::from(m)).collect();
     let local = needs.iter().map(|&need| if need > NOTABLE * value_pa { need.min(LOCAL_MOST_PA) as f32 } else { value_pa as f32 }).collect();
     YoungAuto { value_pa, local, warnings: warnings(value_pa, needed_pa), notes: notes(value_pa, &needs) }
+}
+
+/// Lets go of threads that no stiffness that is chosen makes stand: they would droop or curl up, however
+/// little they weigh. What they are part of does not: it is what it is. How many there are.
+pub(super) fn let_go_of_threads(sections: &mut Sections) -> usize {
+    let most_m3 = MAJOR_SHARE * sections.volume_m3();
+    let cuts = sections.cuts();
+    let too_slender = |cut: &&Cut| {
+        let column_m = column_m(cut);
+        cut.volume_m3 < most_m3 && column_m > THREAD_M && column_m > THREAD_SLENDERNESS * cut.reach_m
+    };
+    // From the base on: what hangs on one that is let go goes with it.
+    let mut threads = 0;
+    for cut in cuts.iter().rev().filter(too_slender) {
+        if !cut.sections.iter().all(|&id| sections.is_out(id)) {
+            sections.leave_out(cut);
+            threads += 1;
+        }
+    }
+    threads
 }
 
 /// Greenhill's bound of what a cut carries, with the safety factor, over its weight.

@@ -243,6 +243,9 @@ fn keep_solids(store: &Store, key: &str, solids: &[Solid]) -> Result<(), EngineE
         pack::write(&entry, &format!("{index}.volume"), &solid.volume_m3)?;
         pack::write(&entry, &format!("{index}.inner"), &inner)?;
         pack::write(&entry, &format!("{index}.stance"), &solid.stance.local_m)?;
+        let (hung, hung_at): (Vec<u32>, Vec<[f32; 3]>) = solid.hung.iter().map(|&(g, at)| (g, at.to_array())).unzip();
+        pack::write(&entry, &format!("{index}.hung"), &hung)?;
+        pack::write(&entry, &format!("{index}.hung_at"), &hung_at)?;
         rows.push(json!({ "stance_m": solid.stance.whole_m, "fill_ratio": solid.fill_ratio, "spacing_m": solid.spacing_m, "volume_total_m3": solid.volume_total_m3, "warnings": solid.warnings }));
     }
     entry.finish(json!({ "solids": rows }))?;
@@ -263,11 +266,13 @@ fn read_solids(entry: &crate::store::Entry) -> Result<Option<Vec<Solid>>, Engine
     let Some(Ok(rows)) = entry.meta().get("solids").map(|v| serde_json::from_value::<Vec<SolidRow>>(v.clone())) else { return Ok(None) };
     let mut solids = Vec::new();
     for (index, row) in rows.into_iter().enumerate() {
-        let (Some(position), Some(volume_m3), Some(inner), Some(local_m)) = (
+        let (Some(position), Some(volume_m3), Some(inner), Some(local_m), Some(hung), Some(hung_at)) = (
             pack::read::<[f32; 3]>(entry, &format!("{index}.position"))?,
             pack::read::<f32>(entry, &format!("{index}.volume"))?,
             pack::read::<u8>(entry, &format!("{index}.inner"))?,
             pack::read::<f32>(entry, &format!("{index}.stance"))?,
+            pack::read::<u32>(entry, &format!("{index}.hung"))?,
+            pack::read::<[f32; 3]>(entry, &format!("{index}.hung_at"))?,
         ) else {
             return Ok(None);
         };
@@ -279,10 +284,25 @@ fn read_solids(entry: &crate::store::Entry) -> Result<Option<Vec<Solid>>, Engine
             spacing_m: row.spacing_m,
             volume_total_m3: row.volume_total_m3,
             stance: Stance { whole_m: row.stance_m, local_m },
+            hung: hung.into_iter().zip(hung_at.into_iter().map(Vec3::from)).collect(),
             warnings: row.warnings,
         });
     }
     Ok(Some(solids))
+}
+
+/// Where each Gaussian is held: at its centre, or where the thread that it belongs to ends on the solid.
+fn held_at(prepared: &Prepared, solids: &[Solid]) -> Vec<Vec3> {
+    let mut held = prepared.gaussians.mean.clone();
+    for (index, solid) in solids.iter().enumerate() {
+        let members = prepared.members(index as u32, false);
+        for &(member, at) in &solid.hung {
+            if let Some(&gaussian) = members.get(member as usize) {
+                held[gaussian as usize] = at;
+            }
+        }
+    }
+    held
 }
 
 /// Each Gaussian's particles and weights.
@@ -316,7 +336,7 @@ pub(super) fn bound(
         None => {
             let particles: Vec<Vec3> = solids.iter().flat_map(|s| s.position_m.iter().copied()).collect();
             let owner: Vec<u32> = solids.iter().enumerate().flat_map(|(i, s)| std::iter::repeat_n(i as u32, s.position_m.len())).collect();
-            let bound = skin::bind(&prepared.gaussians.mean, &prepared.object_of, &particles, &owner, &spec.skin);
+            let bound = skin::bind(&held_at(prepared, solids), &prepared.object_of, &particles, &owner, &spec.skin);
             let entry = store.begin("bind", &keys.bind)?;
             pack::write(&entry, "index", &bound.index)?;
             pack::write(&entry, "weight", &bound.weight)?;

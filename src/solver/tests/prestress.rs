@@ -5,7 +5,8 @@ use crate::Stop;
 use crate::solver::substance::{Activation, Substance};
 use crate::solver::validate::{block, stems};
 use crate::solver::{Plane, Settings};
-use crate::spec::ElasticModel;
+use crate::proxy::{self, ProxyRequest, tests::pot_with_a_tendril};
+use crate::spec::{ElasticModel, ProxyKind};
 use glam::Vec3;
 
 #[test]
@@ -22,6 +23,33 @@ fn a_captured_thing_with_slender_stems_stays_as_it_stands() {
     let moved = states.iter().zip(&particles.position_m).map(|(s, p)| s.position_m.distance(*p)).fold(0.0, f32::max);
     // Free of stress, its stems would have come down by centimetres.
     assert!(moved < 0.001, "it moved by {moved} m");
+}
+
+#[test]
+fn a_captured_pot_with_a_stem_and_a_tendril_stays_as_it_stands() {
+    let (gaussians, _) = pot_with_a_tendril();
+    let request = ProxyRequest { gaussians: &gaussians, ground_m: 0.0, cell_m: 0.02, kind: ProxyKind::Voxel, seed: 1 };
+    let solid = proxy::build(&request).expect("a solid");
+    let young = proxy::young_auto(&solid.stance, 1000.0).local;
+    let n = solid.position_m.len();
+    let mut particles = block(Vec3::ZERO, Vec3::splat(0.1), 0.1, 1e5, 0.3);
+    particles.velocity_m_s = vec![Vec3::ZERO; n];
+    particles.density_kg_m3 = vec![1000.0; n];
+    particles.young_pa = proxy::nearest(&gaussians, &solid.position_m).iter().map(|&g| young[g as usize]).collect();
+    particles.poisson = vec![0.3; n];
+    particles.substance = vec![0; n];
+    particles.object = vec![0; n];
+    (particles.position_m, particles.volume_m3) = (solid.position_m, solid.volume_m3);
+    let mut settings = Settings::new(request.cell_m);
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.5, restitution: 0.0 });
+    let mut solver = solver(settings, &particles);
+    let stop = Stop::default();
+    solver.prestress(&[0], &stop, &mut |_| {}).expect("a prestress");
+    solver.advance(0.3, &stop).expect("an advance");
+    let states = solver.states().expect("states");
+    let moved = states.iter().zip(&particles.position_m).map(|(s, p)| s.position_m.distance(*p)).fold(0.0, f32::max);
+    // One per cent of its height.
+    assert!(moved < 0.0028, "it moved by {moved} m");
 }
 
 #[test]
