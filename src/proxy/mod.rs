@@ -212,7 +212,9 @@ fn hung(gaussians: &Gaussians, grid: &grid::Grid, sections: &Sections) -> Vec<(u
 
 fn hanging(threads: usize, gaussians: usize, of: usize) -> String {
     let share = 100.0 * gaussians as f32 / of as f32;
-    format!("{threads} threads too slender to carry themselves ({share:.1} % of the Gaussians) have no particles of their own and follow what they hang on")
+    format!(
+        "{threads} threads too slender to carry themselves ({share:.1} % of the Gaussians) have no particles of their own and follow what they hang on"
+    )
 }
 
 fn warnings(wide: usize, joined: &join::Joined) -> Vec<String> {

@@ -68,7 +68,8 @@ mod tests {
     fn the_way_goes_round_what_is_not_solid() {
         let grid = Grid { low: Vec3::ZERO, voxel_m: 1.0, size: UVec3::new(30, 10, 30) };
         // An arch: up, across, and down again to a voxel above the floor; a speck beside it.
-        let arch = |v: UVec3| v.y == 4 && ((v.x == 3 && v.z <= 20) || (v.z == 20 && (3..=20).contains(&v.x)) || (v.x == 20 && (5..=20).contains(&v.z)));
+        let arch =
+            |v: UVec3| v.y == 4 && ((v.x == 3 && v.z <= 20) || (v.z == 20 && (3..=20).contains(&v.x)) || (v.x == 20 && (5..=20).contains(&v.z)));
         let solid: Vec<bool> = (0..grid.len()).map(|i| arch(grid.voxel(i)) || grid.voxel(i) == UVec3::new(26, 4, 10)).collect();
         let way = from_base(&grid, &solid);
         let at = |x, z| way[grid.index(UVec3::new(x, 4, z))];

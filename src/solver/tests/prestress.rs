@@ -2,10 +2,10 @@
 
 use super::solver;
 use crate::Stop;
+use crate::proxy::{self, ProxyRequest, tests::pot_with_a_tendril};
 use crate::solver::substance::{Activation, Substance};
 use crate::solver::validate::{block, stems};
 use crate::solver::{Plane, Settings};
-use crate::proxy::{self, ProxyRequest, tests::pot_with_a_tendril};
 use crate::spec::{ElasticModel, ProxyKind};
 use glam::Vec3;
 
