@@ -54,13 +54,18 @@ struct Params {
     // 1.5 * 2^23, which takes the fraction from what is added to it. A constant would be added to other
     // constants first.
     rounder: f32,
+    // Bits of the layers that hold liquid.
+    wet_layers: u32,
+    // Layer of each object, four bits each.
+    layer_of: array<u32, DEALT / 8u>,
     // Where each block of the window is stored, layer after layer.
     slots: array<u32>,
 }
 
 // The layer of a particle's object.
 fn layer_of(tag: u32) -> u32 {
-    return (tag & 0xffffu) % params.layers;
+    let object = (tag & 0xffffu) % DEALT;
+    return ((params.layer_of[object / 8u] >> (4u * (object & 7u))) & 15u) % params.layers;
 }
 
 // The layer whose blocks a particle is sorted into: where there are liquids beside the grid, who look for
@@ -171,12 +176,11 @@ fn stencil(x: vec3<f32>, base: vec3<i32>, cell: vec3<u32>) -> Stencil {
     return in_layer(s, 0u);
 }
 
-// The same nodes in the layer of a particle's object.
-fn in_layer(s: Stencil, tag: u32) -> Stencil {
+// The same nodes in another layer.
+fn in_layer(s: Stencil, layer: u32) -> Stencil {
     var own = s;
     let near = s.cell >> vec3<u32>(2u);
     let far = (s.cell + vec3<u32>(2u)) >> vec3<u32>(2u);
-    let layer = layer_of(tag);
     let nn = block_number(near, layer);
     let fa = block_number(vec3<u32>(near.x, far.y, near.z), layer);
     let nf = block_number(vec3<u32>(near.xy, far.z), layer);

@@ -19,7 +19,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let position = known.position;
     let base = base_node(position.xyz);
     let cell = vec3<u32>(clamp(base - params.origin, vec3<i32>(0), vec3<i32>(params.blocks * 4u) - vec3<i32>(3)));
-    let m = moved(i, known, gather(in_layer(stencil(position.xyz, base, cell), bitcast<u32>(known.label.y))), alive);
+    let m = moved(i, known, gather(in_layer(stencil(position.xyz, base, cell), layer_of(bitcast<u32>(known.label.y)))), alive);
     if (alive && m.carried) {
         write_motion(i, m.v, m.affine);
     }

@@ -3,8 +3,10 @@
 // Thickness of the liquid that walls brake; the same again where that is a film as a whole, metres.
 @group(0) @binding(10) var<storage, read> film: array<vec2<f32>>;
 
+// Of liquid alone: what else is at the node is on another layer, and its surface is not the liquid's.
 fn liquid_pull(node: Node) -> vec4<f32> {
-    return pull[stored(vec3<u32>(node.cell), 0u)];
+    let wet = ((params.wet_layers >> node.layer) & 1u) != 0u;
+    return select(vec4<f32>(0.0), pull[stored(vec3<u32>(node.cell), 0u)], wet);
 }
 
 // Whether a wall brakes the liquid of a node: along one without friction any liquid slips.

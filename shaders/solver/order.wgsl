@@ -1,7 +1,7 @@
 // Sort, last pass: within each cell by original index, so that the order depends on positions alone
 // and every f32 sum over it repeats to the bit. Where workgroups go by block, an item's particles are then
 // dealt out in rounds of every eighth, so that neighbours lie in different cells and seldom add to one node
-// at once. Copies the particles into that order.
+// at once. Copies the particles into that order; into the one that they have where a particle left the window.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> slots: array<vec4<u32>>;
@@ -11,6 +11,7 @@
 @group(0) @binding(5) var<storage, read_write> matter_out: array<vec4<f32>>;
 @group(0) @binding(6) var<storage, read> block_start: array<u32>;
 @group(0) @binding(7) var<storage, read> cell_end: array<u32>;
+@group(0) @binding(8) var<storage, read_write> control: Control;
 
 // An item of a block, in which a slot lies: its first slot, and how many.
 fn item_with(slot: u32, block: u32) -> vec2<u32> {
@@ -37,10 +38,22 @@ fn undealt(slot: u32, item: vec2<u32>) -> u32 {
     return item.x + 8u * (past % length) + select(0u, item.y & 7u, late) + past / length;
 }
 
+fn hand_on(from_slot: u32, to_slot: u32) {
+    let n = params.count;
+    for (var plane = 0u; plane < 4u; plane++) {
+        kinematics_out[plane * n + to_slot] = kinematics[plane * n + from_slot];
+        matter_out[plane * n + to_slot] = matter[plane * n + from_slot];
+    }
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let n = params.count;
     if (id.x >= n) {
+        return;
+    }
+    if (atomicLoad(&control.window) != 0u) {
+        hand_on(id.x, id.x);
         return;
     }
     var slot = id.x;
@@ -64,8 +77,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (params.mixes != 0u) {
         target_slot = dealt(target_slot, item_with(target_slot, mine.x >> 6u));
     }
-    for (var plane = 0u; plane < 4u; plane++) {
-        kinematics_out[plane * n + target_slot] = kinematics[plane * n + mine.z];
-        matter_out[plane * n + target_slot] = matter[plane * n + mine.z];
-    }
+    hand_on(mine.z, target_slot);
 }

@@ -98,7 +98,7 @@ fn main(
     let label = matter[3u * params.count + i];
     let tag = bitcast<u32>(label.y);
     let counts = alive && inside && on_grid(tag);
-    let s = in_layer(stencil(x, base, vec3<u32>(max(first, vec3<i32>(0)))), tag);
+    let s = in_layer(stencil(x, base, vec3<u32>(max(first, vec3<i32>(0)))), layer_of(tag));
     let key = select(0xffffffffu, row(s, 0u).nodes.x, counts);
     let starts = subgroupBallot(lane == 0u || subgroupShuffleUp(key, 1u) != key);
     let last = lane + 1u == lanes || ((starts[(lane + 1u) >> 5u] >> ((lane + 1u) & 31u)) & 1u) != 0u;

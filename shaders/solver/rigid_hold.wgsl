@@ -1,11 +1,13 @@
 // Start of a segment: a body with a point in a pin is held by it, still or along its path, and one that
-// no pin reaches is free.
+// no pin reaches is free. What bodies may hand to nodes of soft matter in the first substep is measured, for its
+// fixed-point scale.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> pins: array<Pin>;
 @group(0) @binding(2) var<storage, read_write> bodies: array<Body>;
 @group(0) @binding(3) var<storage, read> shapes: array<Shape>;
 @group(0) @binding(4) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> control: Control;
 var<immediate> substep: Substep;
 
 // The first point that is held.
@@ -34,5 +36,9 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         if (first != 0xffffffffu) {
             bodies[b].velocity = pinned(place_of(b, first));
         }
+        let spin = spin_of(shapes[b].inverse, bodies[b].turn, bodies[b].angular_momentum.xyz);
+        let fastest = length(bodies[b].velocity.xyz) + length(spin) * shapes[b].radius_m;
+        let heaviest = 1000.0 * params.momentum_floor;
+        atomicMax(&control.momentum[substep.index & 3u], bitcast<u32>(heaviest * fastest) & 0x7fffffffu);
     }
 }

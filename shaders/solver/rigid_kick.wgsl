@@ -1,10 +1,4 @@
-// Changes the velocity of one object's bodies: v = keep v + add. What is set anew loses its spin too.
-
-struct Kick {
-    add_m_s: vec3<f32>,
-    keep: f32,
-    object: u32,
-}
+// Changes the velocity of one object's bodies. What is set anew loses its spin too.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read_write> bodies: array<Body>;

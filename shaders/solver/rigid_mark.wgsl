@@ -10,11 +10,6 @@
 @group(0) @binding(6) var<storage, read_write> nears: array<atomic<u32>>;
 @group(0) @binding(7) var<storage, read> substances: array<Substance>;
 
-// Liquids of smoothed particles push bodies without the grid.
-fn on_grid(tag: u32) -> bool {
-    return params.has_liquid == 0u || substances[row_of(tag)].kind != SPH_LIQUID;
-}
-
 fn mark(node: u32, contact: u32, bond: u32, beside: bool) {
     if (contact != 0u && beside) {
         atomicMax(&nears[3u * node + 1u], contact);
@@ -34,7 +29,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let x = kinematics[id.x].xyz;
     let base = base_node(x);
     let first = base - params.origin;
-    if (is_rigid(tag) || !on_grid(tag) || !in_window(first)) {
+    if (!on_grid(tag) || !in_window(first)) {
         return;
     }
     let kind = substances[row_of(tag)].kind;
@@ -67,7 +62,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if ((contact | bond) == 0u) {
         return;
     }
-    let s = in_layer(stencil(x, base, vec3<u32>(first)), tag);
+    let s = in_layer(stencil(x, base, vec3<u32>(first)), layer_of(tag));
     for (var k = 0u; k < 9u; k++) {
         let r = row(s, k);
         let d = vec3<f32>(-s.place.x, r.dy, r.dz);

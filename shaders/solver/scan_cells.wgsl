@@ -1,4 +1,6 @@
-// Sort, fifth pass: where each cell's particles begin and end. One workgroup for each active block.
+// Sort, fifth pass: where each cell's particles begin and end. One workgroup for each active block. Once a particle
+// has left the window the run will be rolled back: then no cell has any, so that nobody looks through those
+// that crowd in the cells at the edge.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
@@ -6,6 +8,7 @@
 @group(0) @binding(3) var<storage, read> cell_count: array<u32>;
 @group(0) @binding(4) var<storage, read_write> cell_start: array<u32>;
 @group(0) @binding(5) var<storage, read_write> cell_end: array<u32>;
+@group(0) @binding(6) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(SCAN_LANES)
 fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
@@ -15,5 +18,5 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     let scanned = scan(lane, vec3<u32>(cell_count[cell], 0u, 0u));
     let start = block_start[slot] + scanned.before.x;
     cell_start[cell] = start;
-    cell_end[cell] = start + cell_count[cell];
+    cell_end[cell] = start + select(cell_count[cell], 0u, atomicLoad(&control.window) != 0u);
 }

@@ -50,5 +50,5 @@ fn gathered(item: Item, position: vec3<f32>, tag: u32) -> Gathered {
         return gather_tile(position * params.per_m - vec3<f32>(base), tile_start(item, first));
     }
     let cell = vec3<u32>(clamp(first, vec3<i32>(0), vec3<i32>(params.blocks * 4u) - vec3<i32>(3)));
-    return gather(in_layer(stencil(position, base, cell), tag));
+    return gather(in_layer(stencil(position, base, cell), layer_of(tag)));
 }

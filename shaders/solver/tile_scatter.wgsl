@@ -149,7 +149,7 @@ fn hand_over(item: Item, x: vec3<f32>, tag: u32, l: Load) {
     if (tile_holds(item, first, tag)) {
         drop_in_tile(l, x * params.per_m - vec3<f32>(base), tile_start(item, first));
     } else if (in_window(first)) {
-        drop_on_grid(l, in_layer(stencil(x, base, vec3<u32>(first)), tag));
+        drop_on_grid(l, in_layer(stencil(x, base, vec3<u32>(first)), layer_of(tag)));
     } else {
         atomicStore(&control.window, 1u);
     }

@@ -92,14 +92,19 @@ pub struct Readback {
 impl Readback {
     /// Copies the first bytes of each buffer aside, in order with what was submitted before.
     pub fn start(gpu: &Gpu, sources: &[(&wgpu::Buffer, u64)]) -> Readback {
+        Readback::start_at(gpu, &sources.iter().map(|&(source, bytes)| (source, 0, bytes)).collect::<Vec<_>>())
+    }
+
+    /// The same from some byte of each on, a multiple of 4.
+    pub fn start_at(gpu: &Gpu, sources: &[(&wgpu::Buffer, u64, u64)]) -> Readback {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
         let parts: Vec<_> = sources
             .iter()
-            .map(|(source, bytes)| {
+            .map(|(source, from, bytes)| {
                 let size = bytes.next_multiple_of(4).max(4);
                 // Few sizes, so that most are found again.
                 let target = gpu.staging.take(gpu, size.next_power_of_two().min(size.next_multiple_of(1 << 20)));
-                encoder.copy_buffer_to_buffer(source, 0, &target, 0, size);
+                encoder.copy_buffer_to_buffer(source, *from, &target, 0, size);
                 (target, *bytes)
             })
             .collect();

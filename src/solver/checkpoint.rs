@@ -77,7 +77,9 @@ impl Solver {
         Ok(Checkpoint { head, anchors, count: count as usize, readback, gpu: self.gpu.clone() })
     }
 
-    /// Goes back, or forward, to a checkpoint of a solver with the same settings and particles.
+    /// Goes back, or forward, to a checkpoint of a solver with the same settings and particles. Settings that changed on
+    /// the way ([`Solver::end_pins`]) are the caller's: going forward they have to change again, and back of their change
+    /// only a solver made anew will do.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SolverError> {
         let refuse = |what: String| SolverError::Checkpoint { what };
         let count = self.params.count as usize;

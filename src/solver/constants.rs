@@ -215,6 +215,8 @@ pub const RIGID_STEP_SHARE: f64 = 0.02;
 pub const FRICTION: f32 = 0.3;
 /// Layers of the grid at most: objects that move apart from each other.
 pub const MOST_LAYERS: u32 = 8;
+/// Objects that layers are dealt to: all that a spec may have. A solver's others share theirs.
+pub const DEALT: u32 = crate::spec::limits::OBJECTS;
 /// Rounds over the pairs of a node where more than two objects meet.
 pub const MEETING_ROUNDS: u32 = 4;
 /// Gradient of mass over mass, a cell, below which a node lies too deep in a body to tell where its surface is.
@@ -250,6 +252,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("CARRY_SHARE", Constant::F32(CARRY_SHARE)),
         ("CARRY_MOST", Constant::F32(CARRY_MOST)),
         ("MOST_LAYERS", Constant::U32(MOST_LAYERS)),
+        ("DEALT", Constant::U32(DEALT)),
         ("MEETING_ROUNDS", Constant::U32(MEETING_ROUNDS)),
         ("FAINT_SLOPE", Constant::F32(FAINT_SLOPE)),
         ("FAR_SLOPE", Constant::F32(FAR_SLOPE)),
@@ -311,7 +314,6 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("PULL_ZERO", Constant::F32(PULL_ZERO)),
         ("PULL", Constant::F32(PULL)),
         ("WETTING", Constant::F32(WETTING)),
-        ("RIGID", Constant::U32(substance::RIGID)),
         ("RIGID_BODIES", Constant::U32(RIGID_BODIES)),
         ("RIGID_LANES", Constant::U32(RIGID_LANES)),
         ("RIGID_POINTS", Constant::U32(RIGID_POINTS)),

@@ -1,10 +1,10 @@
 //! The solver itself: its particles, its surroundings, and what may be done to them between frames.
 
 use super::budget;
-use super::constants::{BLOCK_SLACK_CELLS, FEW_PARTICLES, FIXED_BITS, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP};
-use super::encounter::{self, Encounter};
+use super::constants::{BLOCK_SLACK_CELLS, DEALT, FEW_PARTICLES, FIXED_BITS, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP};
+use super::encounter::{Encounter, Layers};
 use super::fields::Fields;
-use super::grid::{GridBuffers, Window, params_buffer};
+use super::grid::{GROUPS_MOST, GridBuffers, Window, params_buffer};
 use super::kept::Kept;
 use super::laws::{Laws, rows};
 use super::liquid::LiquidPasses;
@@ -52,6 +52,8 @@ pub(super) struct Params {
     pub item_particles: u32,
     pub mixes: u32,
     pub rounder: f32,
+    pub wet_layers: u32,
+    pub layer_of: [u32; DEALT as usize / 8],
 }
 
 #[repr(C)]
@@ -63,7 +65,7 @@ pub(super) struct Kick {
     padding: [u32; 3],
 }
 
-/// An elastic world of particles on one device. MLS-MPM (Hu et al. 2018) with quadratic splines and
+/// A world of particles on one device, soft, rigid and liquid. MLS-MPM (Hu et al. 2018) with quadratic splines and
 /// APIC transfers (Jiang et al. 2015), on a sparse part of an endless lattice.
 #[derive(Debug)]
 pub struct Solver {
@@ -118,15 +120,15 @@ impl Solver {
     /// Uploads the particles; the first window of the grid is made when time first moves.
     pub fn new(gpu: &Gpu, settings: Settings, particles: &Particles) -> Result<Solver, SolverError> {
         check(&settings)?;
+        check_count(particles.len() as u64, WORKGROUP)?;
         let colliders = obstacles::colliders(&settings);
         let mut states = state::initial(particles, &colliders, settings.cell_m)?;
         let softened = budget::afford(&mut states, &settings, 0.0);
         let n = states.len();
         let heaviest_kg = states.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
         let object_count = states.iter().map(ParticleState::object).max().unwrap_or(0) + 1;
-        let params = Params {
+        let mut params = Params {
             count: n as u32,
-            layers: encounter::layers(&settings, &states, object_count),
             collider_count: colliders.len() as u32,
             gravity_m_s2: settings.gravity_m_s2.into(),
             cell_m: settings.cell_m,
@@ -146,6 +148,7 @@ impl Solver {
             momentum_floor: heaviest_kg * 1e-3,
             ..Default::default()
         };
+        Layers::deal(&settings, &states, &particles.substances).note(&mut params);
         let rigid = rigid::assemble(&states, &particles.substances, &colliders, settings.cell_m)?.map(|all| Rigid::new(gpu, &all)).transpose()?;
         let passes = Passes::new(gpu);
         let mut solver = Solver {
@@ -328,6 +331,12 @@ pub(super) fn padded<T: Pod>(values: &[T], least: usize) -> Vec<T> {
     values
 }
 
+/// Refuses more than the workgroups of a pass reach, where each takes so many.
+pub(super) fn check_count(count: u64, workgroup: u32) -> Result<(), SolverError> {
+    let allowed = GROUPS_MOST * u64::from(workgroup);
+    if count > allowed { Err(SolverError::TooMany { count, allowed }) } else { Ok(()) }
+}
+
 fn check(settings: &Settings) -> Result<(), SolverError> {
     let refuse = |what: String, expected: &str| Err(SolverError::Input { what, expected: expected.to_owned() });
     if !(settings.cell_m > 0.0 && settings.cell_m.is_finite()) {
@@ -346,4 +355,17 @@ fn check(settings: &Settings) -> Result<(), SolverError> {
         return refuse(format!("frames of {} s", settings.frame_s), "a positive length");
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn particles_that_no_dispatch_reaches_are_refused() {
+        let reached = u64::from(wgpu::Limits::default().max_compute_workgroups_per_dimension) * u64::from(WORKGROUP);
+        assert!(check_count(reached, WORKGROUP).is_ok());
+        let refused = check_count(reached + 1, WORKGROUP).unwrap_err().to_string();
+        assert!(refused.contains("8388481") && refused.contains("solver.cells_across"), "{refused}");
+    }
 }

@@ -76,7 +76,12 @@ pub(super) struct GridBuffers {
     pub meeting: Option<MeetingBuffers>,
 }
 
-/// See `shaders/solver/rigid_meeting.wgsl`.
+/// Words of `Near` of `shaders/solver/rigid_meeting.wgsl`.
+pub(super) type Near = [u32; 3];
+/// And of `Meeting`.
+pub(super) type Meeting = [f32; 16];
+
+/// What a node holds of those.
 #[derive(Clone, Debug)]
 pub(super) struct MeetingBuffers {
     pub nears: wgpu::Buffer,
@@ -86,7 +91,7 @@ pub(super) struct MeetingBuffers {
 /// Bytes of all buffers for one node, and beside them for one of several layers, and with rigid bodies.
 const NODE_BYTES: u64 = 52;
 const LAYER_BYTES: u64 = 4;
-const MEETING_BYTES: u64 = 76;
+const MEETING_BYTES: u64 = (size_of::<Near>() + size_of::<Meeting>()) as u64;
 const GAIN_BYTES: u64 = 8;
 /// Bytes for one block of the window, and of the map.
 const SPREAD_BYTES: u64 = 12;
@@ -97,7 +102,7 @@ const GPU_GRID_BYTES: u64 = 6 << 30;
 /// Of these, what the window may take.
 const SPREAD_SHARE: u64 = 4;
 /// Workgroups along an axis that every device runs.
-const GROUPS_MOST: u64 = 65_535;
+pub(super) const GROUPS_MOST: u64 = 65_535;
 
 /// What a scene asks of its grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -183,8 +188,8 @@ impl GridBuffers {
 impl MeetingBuffers {
     fn new(gpu: &Gpu, nodes: usize) -> Result<MeetingBuffers, SolverError> {
         Ok(MeetingBuffers {
-            nears: gpu.storage::<[u32; 3]>("solver.rigid.nears", nodes)?,
-            meetings: gpu.storage::<[f32; 16]>("solver.rigid.meetings", nodes)?,
+            nears: gpu.storage::<Near>("solver.rigid.nears", nodes)?,
+            meetings: gpu.storage::<Meeting>("solver.rigid.meetings", nodes)?,
         })
     }
 }

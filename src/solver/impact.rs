@@ -1,10 +1,11 @@
 //! Looking for impacts: what an object touches at a moment, and what it soon will as far as its speed tells.
 //!
-//! Looked at between segments, on the host, from where particles are; a scene that waits for no impact never is.
+//! Looked at between segments, on the host, from where particles are, which comes back for it; a scene that waits for no
+//! impact never is.
 
 use super::core::Solver;
 use super::obstacles::{self, ColliderRecord};
-use super::state::ParticleState;
+use super::state::Glance;
 use super::types::SolverError;
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
@@ -53,9 +54,8 @@ impl Solver {
     /// Everything as it is now.
     pub fn sight(&self) -> Result<Sight, SolverError> {
         let mut bodies: Vec<Body> = (0..self.object_count).map(|_| Body::default()).collect();
-        for state in self.states()? {
-            let ParticleState { position_m, velocity_m_s, rest_m, .. } = state;
-            if let Some(body) = bodies.get_mut(state.object() as usize) {
+        for Glance { position_m, velocity_m_s, object, rest_m } in self.buffers[self.current].glance(&self.gpu, self.params.count as usize)? {
+            if let Some(body) = bodies.get_mut(object as usize) {
                 body.points.push((position_m, rest_m));
                 body.velocity_m_s.push(velocity_m_s);
                 body.speed_m_s = body.speed_m_s.max(velocity_m_s.length());

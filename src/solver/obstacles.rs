@@ -17,7 +17,7 @@ pub(super) struct ColliderRecord {
     pub surface: [f32; 4],
 }
 
-/// A pin on the device; see `shaders/solver/grid.wgsl`.
+/// A pin on the device; see `shaders/solver/pin.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct PinRecord {

@@ -60,14 +60,14 @@ passes! {
     scan_sums: ["chunk", "scan", "scan_sums"] [Read, Read, Write] 0;
     scan_blocks: ["control", "chunk", "scan", "scan_blocks"] [Write, Write, Read, Write, Write, Write, Write, Write] 0;
     count: ["cell", "count"] [Read, Read, Read, Write] 0;
-    scan_cells: ["scan", "scan_cells"] [Read, Read, Read, Read, Write, Write] 0;
+    scan_cells: ["control", "scan", "scan_cells"] [Read, Read, Read, Read, Write, Write, Write] 0;
     scatter: ["cell", "scatter"] [Read, Read, Read, Write, Read, Write] 0;
-    order: ["order"] [Read, Read, Read, Read, Write, Write, Read, Read] 0;
+    order: ["control", "order"] [Read, Read, Read, Read, Write, Write, Read, Read, Write] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
-    p2g: ["control", "substep", "substance", "hash", "particle", "contact", "marks", "p2g"] [Read, Read, Read, Read, Write, Write, Write, Read] SUBSTEP;
+    p2g: ["control", "substep", "substance", "hash", "particle", "contact", "on_grid", "marks", "p2g"] [Read, Read, Read, Read, Write, Write, Write, Read] SUBSTEP;
     grid: ["control", "substep", "contact", "node", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;
-    kick: ["particle", "particle_write", "kick"] [Read, Write, Read] KICK;
+    kick: ["particle", "particle_write", "kick_of", "kick"] [Read, Write, Read] KICK;
     prestress_gather: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;
     prestress_residual: ["control", "substep", "contact", "node", "prestress", "prestress_sum", "prestress_residual"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Write] SUBSTEP;
     prestress_product: ["control", "substep", "prestress", "prestress_sum", "prestress_product"] [Read, Read, Write, Write, Write, Write, Write] SUBSTEP;

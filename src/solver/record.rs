@@ -164,10 +164,12 @@ impl Solver {
             ),
             count: gpu.bind(&p.count, &[params, kinematics, matter, &grid.cell_count]),
             scan_cells: gpu
-                .bind(&p.scan_cells, &[params, &grid.active_blocks, &grid.block_start, &grid.cell_count, &grid.cell_start, &grid.cell_end]),
+                .bind(&p.scan_cells, &[params, &grid.active_blocks, &grid.block_start, &grid.cell_count, &grid.cell_start, &grid.cell_end, control]),
             scatter: gpu.bind(&p.scatter, &[params, kinematics, matter, &grid.cell_count, &grid.cell_start, &self.slots]),
-            order: gpu
-                .bind(&p.order, &[params, &self.slots, kinematics, matter, &other.kinematics, &other.matter, &grid.block_start, &grid.cell_end]),
+            order: gpu.bind(
+                &p.order,
+                &[params, &self.slots, kinematics, matter, &other.kinematics, &other.matter, &grid.block_start, &grid.cell_end, control],
+            ),
             stress: gpu.bind(&p.stress, &stress[..if laws.all { 6 } else { 5 }]),
             p2g: gpu.bind(&p.p2g, &[params, kinematics, matter, &self.colliders_buffer, &grid.sums, &grid.marks, &self.control, &laws.table]),
             grid: gpu.bind(&p.grid, &on_grid),

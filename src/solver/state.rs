@@ -172,6 +172,32 @@ impl StateBuffers {
     }
 }
 
+/// Where a particle is and how it moves, without what it is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Glance {
+    pub position_m: Vec3,
+    pub velocity_m_s: Vec3,
+    pub object: u32,
+    /// See [`ParticleState::rest_m`].
+    pub rest_m: f32,
+}
+
+impl StateBuffers {
+    /// Reads where all particles are, in the order that they lie in: three of the eight planes.
+    pub fn glance(&self, gpu: &Gpu, count: usize) -> Result<Vec<Glance>, GpuError> {
+        let plane = 16 * count as u64;
+        let parts = Readback::start_at(gpu, &[(&self.kinematics, 0, 2 * plane), (&self.matter, 3 * plane, plane)]).wait(gpu)?;
+        let [k, m]: [Vec<[f32; 4]>; 2] = [&parts[0], &parts[1]].map(|bytes| bytemuck::pod_collect_to_vec(bytes));
+        let glance = |i: usize| Glance {
+            position_m: Vec3::from_slice(&k[i]),
+            velocity_m_s: Vec3::from_slice(&k[count + i]),
+            object: m[i][1].to_bits() & 0xffff,
+            rest_m: m[i][2],
+        };
+        Ok((0..count).map(glance).collect())
+    }
+}
+
 /// All particles in their original order, from the bytes of both buffers.
 pub(super) fn unpack(kinematics: &[u8], matter: &[u8], count: usize) -> Vec<ParticleState> {
     let n = count;

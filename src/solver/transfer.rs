@@ -36,7 +36,7 @@ mod tile {
     passes! {
         /// A workgroup for the particles of a block.
         TilePasses;
-        p2g_tile: ["control", "substep", "substance", "hash", "particle", "contact", "marks", "tile", "tile_scatter", "p2g_tile"] [Read, Read, Read, Read, Write, Write, Write, Read, Read] SUBSTEP;
+        p2g_tile: ["control", "substep", "substance", "hash", "particle", "contact", "on_grid", "marks", "tile", "tile_scatter", "p2g_tile"] [Read, Read, Read, Read, Write, Write, Write, Read, Read] SUBSTEP;
         g2p_tile: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "contact", "gather", "move", "tile", "tile_gather", "g2p_tile"] [Read, Write, Write, Read, Read, Read, Write, Read, Read] SUBSTEP;
     }
 }
@@ -55,7 +55,7 @@ mod fused {
     passes! {
         /// From the grid to particles and back to the grid.
         FusedPasses;
-        fused: ["control", "substep", "substance", "hash", "material", "elastic_only", "particle", "particle_write", "contact", "marks", "gather", "move", "tile", "tile_gather", "tile_scatter", "fused"] [Read, Write, Write, Read, Read, Read, Write, Read, Read, Write, Write] SUBSTEP;
+        fused: ["control", "substep", "substance", "hash", "material", "elastic_only", "particle", "particle_write", "contact", "on_grid", "marks", "gather", "move", "tile", "tile_gather", "tile_scatter", "fused"] [Read, Write, Write, Read, Read, Read, Write, Read, Read, Write, Write] SUBSTEP;
     }
 }
 
@@ -64,7 +64,7 @@ mod fused_laws {
     passes! {
         /// The same, with all laws.
         FusedLawPasses;
-        fused_laws: ["control", "substep", "substance", "hash", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "cube_root", "law_liquid", "laws", "activation", "fused_laws", "remember", "contact", "marks", "gather", "move", "tile", "tile_gather", "tile_scatter", "fused"] [Read, Write, Write, Read, Read, Read, Write, Read, Read, Write, Write, Read, Write] SUBSTEP;
+        fused_laws: ["control", "substep", "substance", "hash", "material", "particle", "particle_write", "svd", "hencky", "law_plastic", "law_viscoplastic", "law_sand", "law_snow", "law_muscle", "cube_root", "law_liquid", "laws", "activation", "fused_laws", "remember", "contact", "on_grid", "marks", "gather", "move", "tile", "tile_gather", "tile_scatter", "fused"] [Read, Write, Write, Read, Read, Read, Write, Read, Read, Write, Write, Read, Write] SUBSTEP;
     }
 }
 

@@ -157,10 +157,10 @@ pub struct Settings {
     /// What is driven by expressions.
     pub fields: Vec<Field>,
     /// Coulomb coefficient of each object against others, by index; between two the root of the product of theirs
-    /// counts. Where the list ends, that of what the object is made of.
-    pub frictions: Vec<f32>,
-    /// Objects that touch stick together: what is one body, driven in parts. Else they meet with friction.
-    pub glued: bool,
+    /// counts. Where the list ends, that of what the object is made of; a spec gives none.
+    pub(crate) frictions: Vec<f32>,
+    /// Objects that touch stick together: what is one body, driven in parts, as only validation does. Else they meet with friction.
+    pub(crate) glued: bool,
     /// Length of a frame. Substeps are equal parts of it, so that an event inside a frame changes
     /// nothing before itself.
     pub frame_s: f64,
@@ -292,6 +292,14 @@ pub enum SolverError {
         /// Nodes needed.
         nodes: u64,
         /// Nodes allowed.
+        allowed: u64,
+    },
+    /// More particles than one dispatch reaches.
+    #[error("the objects have {count} particles, of which one pass reaches {allowed}; use a smaller solver.cells_across")]
+    TooMany {
+        /// How many there are.
+        count: u64,
+        /// How many there may be.
         allowed: u64,
     },
     /// More substeps than anyone waits for.

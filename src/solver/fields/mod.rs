@@ -19,12 +19,6 @@ use crate::spec::expression::{Instruction, hash};
 use bytemuck::{Pod, Zeroable};
 use std::sync::OnceLock;
 
-macro_rules! part {
-    ($name:literal) => {
-        (concat!("solver/", $name, ".wgsl"), include_str!(concat!("../../../shaders/solver/", $name, ".wgsl")))
-    };
-}
-
 /// `Field` of `shaders/solver/fields.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -208,16 +202,16 @@ fn source() -> KernelSource {
         label: "solver.fields",
         entry: "main",
         parts: vec![
-            part!("common"),
-            part!("control"),
-            part!("substep"),
-            part!("hash"),
-            part!("particle"),
-            part!("particle_write"),
-            part!("chance"),
-            part!("dual"),
-            part!("field"),
-            part!("fields"),
+            shader!("common"),
+            shader!("control"),
+            shader!("substep"),
+            shader!("hash"),
+            shader!("particle"),
+            shader!("particle_write"),
+            shader!("chance"),
+            shader!("dual"),
+            shader!("field"),
+            shader!("fields"),
         ],
         constants: constants::all(),
         bindings: vec![Read, Write, Read, Read, Read, Read, Write, Write],

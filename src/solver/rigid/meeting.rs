@@ -3,7 +3,8 @@
 //! A body has no mass on the grid. Nodes that it meets are first weighed as if they moved with it, which
 //! gives the velocity that both will have; then each node responds to that velocity, as to a moving
 //! collider or, where its own object's soft parts hang on the body, by moving with it; the body gets
-//! the opposite impulse. Momentum is exact, and a body may be as light beside a liquid as it likes.
+//! the opposite impulse, the one that the fixed point of the grid took. So momentum is kept but for the rounding
+//! of sums, and a body may be as light beside a liquid as it likes.
 
 use super::body::Assembly;
 use crate::gpu::{Gpu, Recording};
@@ -17,7 +18,7 @@ passes! {
     /// The passes of rigid bodies among soft matter.
     MeetingPasses;
     rigid_share: ["rigid", "rigid_share"] [Read, Read, Read, Read, Read, Write] 0;
-    rigid_mark: ["substance", "particle", "rigid", "rigid_field", "rigid_meeting", "rigid_mark"] [Read, Read, Read, Read, Read, Read, Write, Read] 0;
+    rigid_mark: ["substance", "particle", "on_grid", "rigid", "rigid_field", "rigid_meeting", "rigid_mark"] [Read, Read, Read, Read, Read, Read, Write, Read] 0;
     rigid_touch: ["control", "substep", "rigid", "rigid_field", "node", "rigid_meeting", "rigid_touch"] [Read, Read, Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
     rigid_predict: ["rigid", "rigid_meeting", "rigid_predict"] [Read, Read, Read, Read, Read, Write] 0;
     rigid_meet: ["rigid", "rigid_meet"] [Read, Read, Read, Read, Write] 0;

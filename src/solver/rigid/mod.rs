@@ -15,8 +15,8 @@ mod tests;
 mod twin;
 
 use super::advance::Substep;
-use super::constants::{RIGID_POINTS, RIGID_STEP_S, RIGID_STEP_SHARE, WORKGROUP};
-use super::core::{Kick, Solver};
+use super::constants::{RIGID_LANES, RIGID_POINTS, RIGID_STEP_S, RIGID_STEP_SHARE, WORKGROUP};
+use super::core::{Kick, Solver, check_count};
 use super::grid::GridBuffers;
 use super::kept::Kept;
 use super::passes::SUBSTEP;
@@ -36,12 +36,12 @@ pub(super) fn all_kernels() -> Vec<crate::gpu::KernelSource> {
 passes! {
     /// The passes of rigid bodies.
     RigidPasses;
-    rigid_hold: ["substep", "contact", "pin", "rigid", "rigid_hold"] [Read, Read, Write, Read, Read] SUBSTEP;
+    rigid_hold: ["control", "substep", "contact", "pin", "rigid", "rigid_hold"] [Read, Read, Write, Read, Read, Write] SUBSTEP;
     rigid_contacts: ["substep", "contact", "rigid", "rigid_field", "rigid_contacts"] [Read, Read, Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
     rigid_driven: ["particle", "rigid", "rigid_driven"] [Read, Read, Read, Read, Read, Read, Write] 0;
     rigid_solve: ["substep", "rigid", "rigid_solve"] [Read, Write, Read, Write, Write, Read, Read, Write] SUBSTEP;
     rigid_place: ["control", "substep", "particle", "particle_write", "rigid", "rigid_place"] [Read, Write, Write, Read, Read, Read, Write] SUBSTEP;
-    rigid_kick: ["rigid", "rigid_kick"] [Read, Write, Read] KICK;
+    rigid_kick: ["rigid", "kick_of", "rigid_kick"] [Read, Write, Read] KICK;
 }
 
 pub(super) use body::{assemble, build};
@@ -110,6 +110,7 @@ pub(super) struct RigidBound {
 impl Rigid {
     /// Uploads the bodies of an assembly.
     pub fn new(gpu: &Gpu, all: &Assembly) -> Result<Rigid, SolverError> {
+        check_count(all.members.len() as u64, RIGID_LANES)?;
         let slots = body::slots(all.bodies.len());
         Ok(Rigid {
             passes: RigidPasses::new(gpu),
@@ -156,7 +157,7 @@ impl Rigid {
         RigidBound {
             meeting: self.meeting.as_ref().and_then(|m| m.bind(solver, grid, current, &of)),
             driven: (solver.fields.is_some() || solver.sph.is_some()).then(|| gpu.bind(&p.rigid_driven, &driven)),
-            hold: gpu.bind(&p.rigid_hold, &[params, &solver.pins_buffer, bodies, shapes, &self.points]),
+            hold: gpu.bind(&p.rigid_hold, &[params, &solver.pins_buffer, bodies, shapes, &self.points, &solver.control]),
             contacts: gpu.bind(
                 &p.rigid_contacts,
                 &[params, &solver.colliders_buffer, bodies, shapes, &self.points, &self.field, manifolds, contacts, &self.scratch],

@@ -4,32 +4,17 @@ use super::solver;
 use crate::Stop;
 use crate::gpu::{Gpu, Recording};
 use crate::solver::advance::Plan;
+use crate::solver::encounter::Layers;
 use crate::solver::obstacles;
 use crate::solver::state::ParticleState;
 use crate::solver::twin::{self, Surroundings};
-use crate::solver::validate::block;
-use crate::solver::{Particles, PinRegion, Plane, Settings, Solver};
+use crate::solver::validate::{block, joined, rigid_body};
+use crate::solver::{Particles, PinRegion, Plane, Settings, Solver, Substance};
 use crate::spec::{ColliderShape, PlaneShape};
 use glam::{DVec3, Vec3};
 
 const CELL_M: f32 = 0.05;
 const SPACING_M: f32 = 0.025;
-
-/// Bodies of one substance, an object each.
-fn objects(bodies: &[Particles]) -> Particles {
-    let mut all = Particles { substances: bodies[0].substances.clone(), ..Particles::default() };
-    for (index, body) in bodies.iter().enumerate() {
-        all.position_m.extend(&body.position_m);
-        all.velocity_m_s.extend(&body.velocity_m_s);
-        all.volume_m3.extend(&body.volume_m3);
-        all.density_kg_m3.extend(&body.density_kg_m3);
-        all.young_pa.extend(&body.young_pa);
-        all.poisson.extend(&body.poisson);
-        all.substance.extend(&body.substance);
-        all.object.extend(vec![index as u32; body.len()]);
-    }
-    all
-}
 
 fn moving(mut body: Particles, velocity_m_s: Vec3) -> Particles {
     body.velocity_m_s.fill(velocity_m_s);
@@ -98,7 +83,7 @@ fn layers_meet_as_their_twins_do() {
     let top = PlaneShape { point_m: [0.0, 0.0, 0.12], normal: [0.0, 0.0, -1.0] };
     let (low_m, high_m) = (Vec3::ZERO, Vec3::splat(0.15));
     settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0, path: Vec::new() }];
-    let mut solver = solver(settings, &objects(&bodies));
+    let mut solver = solver(settings, &bodies.into_iter().reduce(joined).expect("three"));
     let seen = solver.look().expect("a look");
     solver.fit_window(seen.low, seen.high, 4).expect("a window");
     solver.set_surroundings();
@@ -120,7 +105,8 @@ fn layers_meet_as_their_twins_do() {
     let mut layers: Vec<twin::Grid> = (0..3).map(|o| twin::p2g(&of(&stressed, o).copied().collect::<Vec<_>>(), &around)).collect();
     layers.iter_mut().for_each(|grid| twin::grid(grid, &around, dt_s, 0.0));
     let apart = layers.clone();
-    let surfaces = crate::solver::encounter::surfaces(&solver.settings, &states, &solver.laws.substances, 3);
+    let dealt = Layers::deal(&solver.settings, &states, &solver.laws.substances);
+    let surfaces = dealt.surfaces(&solver.settings, &states, &solver.laws.substances, 3);
     assert_eq!(surfaces.iter().map(|s| s[0]).collect::<Vec<_>>(), [0.1, 0.5, 0.3]);
     twin::encounter::encounter(&mut layers, &surfaces, &around, dt_s);
     let met = layers.iter().flatten().zip(apart.iter().flatten()).filter(|(a, b)| (a.1.velocity - b.1.velocity).length() > 1e-3).count();
@@ -146,27 +132,56 @@ fn layers_meet_as_their_twins_do() {
     }
 }
 
+/// Seven stones of a particle each, aside.
+fn pebbles() -> Particles {
+    let pebble = |k: u32| rigid_body(block(Vec3::new(0.05 * k as f32, 0.0, 0.3), Vec3::splat(SPACING_M), SPACING_M, 1e5, 0.3), 0.3, 0.0);
+    (1..7).map(pebble).fold(pebble(0), joined)
+}
+
+#[test]
+fn only_what_is_on_the_grid_has_a_layer() {
+    let (viscosity_pa_s, surface_tension_n_m) = (1e-3, 0.07);
+    let cube = || block(Vec3::ZERO, Vec3::splat(0.1), SPACING_M, 1e5, 0.3);
+    let of = |substance: Substance| Particles { substances: vec![substance], ..cube() };
+    let drop = of(Substance::Liquid { viscosity_pa_s, surface_tension_n_m });
+    let beside = of(Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m });
+    let all = [cube(), pebbles(), cube(), beside, drop].into_iter().reduce(joined).expect("some");
+    let solver = solver(weightless(), &all);
+    let layer = |object: usize| solver.params.layer_of[object / 8] >> (4 * (object % 8)) & 15;
+    assert_eq!((solver.params.layers, layer(0), layer(8), layer(10)), (3, 0, 1, 2));
+    assert_eq!(solver.params.wet_layers, 0b100);
+    // More than there are layers share them in turn; one needs no other.
+    let many = solver_of(&(0..10).map(|_| cube()).reduce(joined).expect("ten"));
+    assert_eq!((many.params.layers, many.params.layer_of[0], many.params.layer_of[1]), (8, 0x7654_3210, 0x10));
+    assert_eq!(solver_of(&joined(pebbles(), cube())).params.layers, 1);
+}
+
+fn solver_of(particles: &Particles) -> Solver {
+    solver(weightless(), particles)
+}
+
 #[test]
 fn cubes_that_collide_part_again_and_keep_their_momentum() {
     let low = moving(block(Vec3::ZERO, Vec3::splat(0.15), SPACING_M, 1e5, 0.3), Vec3::new(1.0, 0.0, 0.0));
     let high = moving(block(Vec3::new(0.2, 0.013, 0.021), Vec3::splat(0.15), SPACING_M, 1e5, 0.3), Vec3::new(-1.0, 0.0, 0.0));
-    let mut solver = solver(weightless(), &objects(&[low, high]));
+    // With stones between them in the list, the other is the ninth object.
+    let mut solver = solver(weightless(), &joined(joined(low, pebbles()), high));
     let one_kg_m_s = f64::from(0.15f32.powi(3) * 1000.0);
     let (mut nearest_m, mut parted_m) = (f64::INFINITY, 0.0);
     for frame in 1..=10 {
         let states = go(&mut solver, f64::from(frame) * 0.02);
         assert!(momentum(&states).length() < 1e-3 * one_kg_m_s, "{}", momentum(&states));
-        let apart_m = (place(&states, 1) - place(&states, 0)).x;
+        let apart_m = (place(&states, 8) - place(&states, 0)).x;
         nearest_m = nearest_m.min(apart_m);
         parted_m = apart_m;
     }
     // They touch, cell or no cell between them, and are squeezed a little.
     assert!(nearest_m < 0.15 + 0.01 && nearest_m > 0.10, "came as near as {nearest_m}");
     let states = solver.states().expect("states");
-    let apart_m_s = (velocity(&states, 1) - velocity(&states, 0)).x;
+    let apart_m_s = (velocity(&states, 8) - velocity(&states, 0)).x;
     assert!(apart_m_s > 0.5 && parted_m > nearest_m + 0.02, "part at {apart_m_s} m/s, {parted_m} m apart");
     // A glued pair would have pulled itself to rest.
-    for s in &states {
+    for s in states.iter().filter(|s| !s.is_rigid()) {
         assert!(s.f().determinant() > 0.5 && s.f().determinant() < 1.5, "torn: {}", s.f());
     }
 }
@@ -179,7 +194,7 @@ fn slide(tangent: f32, friction: f32) -> (f64, f64) {
     let mut settings = Settings { frictions: vec![2.0 * friction, 0.5 * friction], ..Settings::new(CELL_M) };
     settings.gravity_m_s2 = 9.81 * Vec3::new(theta.sin(), 0.0, -theta.cos());
     settings.ground = Some(Plane { height_m: 0.0, friction: 50.0, restitution: 0.0 });
-    let mut solver = solver(settings, &objects(&[lower, upper]));
+    let mut solver = solver(settings, &joined(lower, upper));
     solver.prestress(&[0, 1], &Stop::default(), &mut |_| {}).expect("a prestress");
     let apart = |states: &[ParticleState]| place(states, 1) - place(states, 0);
     let start = apart(&solver.states().expect("states"));
@@ -203,7 +218,7 @@ fn a_block_rests_on_another() {
     let upper = block(Vec3::new(0.038, 0.041, 0.15), Vec3::new(0.125, 0.125, 0.1), SPACING_M, 5e4, 0.3);
     let mut settings = Settings::new(CELL_M);
     settings.ground = Some(Plane { height_m: 0.0, friction: 0.4, restitution: 0.0 });
-    let mut solver = solver(settings, &objects(&[lower, upper]));
+    let mut solver = solver(settings, &joined(lower, upper));
     solver.prestress(&[0, 1], &Stop::default(), &mut |_| {}).expect("a prestress");
     let apart = |states: &[ParticleState]| (place(states, 1) - place(states, 0)).z;
     let start_m = apart(&solver.states().expect("states"));
@@ -231,7 +246,7 @@ fn what_is_thrown_at_a_held_plate_stays_before_it() {
         to_s: 9.0,
         path: Vec::new(),
     }];
-    let mut solver = solver(settings, &objects(&[plate, ball]));
+    let mut solver = solver(settings, &joined(plate, ball));
     let mut lowest_m = f32::INFINITY;
     for frame in 1..=6 {
         let states = go(&mut solver, f64::from(frame) * 0.02);

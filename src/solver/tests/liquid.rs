@@ -7,7 +7,7 @@ use crate::solver::state::ParticleState;
 use crate::solver::substance::{Substance, liquid_bulk_pa};
 use crate::solver::twin::liquid::{Fields, wall};
 use crate::solver::twin::{self, Surroundings};
-use crate::solver::validate::pool;
+use crate::solver::validate::{block, joined, pool};
 use crate::solver::{Plane, Settings, Solver, obstacles};
 use glam::{DVec3, IVec3, Vec3};
 
@@ -179,4 +179,18 @@ fn any_viscosity_runs_at_the_step_of_sound() {
         };
         assert!(spread.contains(&width), "{viscosity_pa_s} Pa s spreads to {width} m");
     }
+}
+
+#[test]
+fn a_liquids_surface_pulls_at_the_liquid_alone() {
+    // A cube of jelly a cell beside a cube of liquid, so that they share nodes and do not touch.
+    let liquid = Substance::Liquid { viscosity_pa_s: 0.1, surface_tension_n_m: 2.0 };
+    let drop = pool(Vec3::ZERO, Vec3::splat(0.2), 0.025, 1000.0, 1e5, liquid);
+    let jelly = block(Vec3::new(0.25, 0.0, 0.0), Vec3::splat(0.2), 0.025, 5e4, 0.3);
+    let mut solver = solver(Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) }, &joined(drop, jelly));
+    solver.advance(0.001, &Stop::default()).expect("an advance");
+    let states = solver.states().expect("states");
+    let fastest = |object: u32| states.iter().filter(|s| s.object() == object).map(|s| s.velocity_m_s.length()).fold(0.0, f32::max);
+    assert!(fastest(0) > 1e-4, "the liquid draws together, at {} m/s", fastest(0));
+    assert_eq!(fastest(1), 0.0);
 }

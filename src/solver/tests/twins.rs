@@ -9,6 +9,7 @@ use crate::solver::state::ParticleState;
 use crate::solver::substance::Substance;
 use crate::solver::twin::{self, Surroundings};
 use crate::solver::validate::{append, block};
+use crate::solver::watch::Control;
 use crate::solver::{Collider, PinRegion, Plane, Settings};
 use crate::spec::{BoxShape, CapsuleShape, ColliderShape, ElasticModel, PlaneShape, SphereShape};
 use glam::{IVec3, Mat3, Vec3};
@@ -63,9 +64,9 @@ pub(super) fn scene_on(gpu: &Gpu, substances: [Substance; 2]) -> (Solver, Vec<Pa
     let (low_m, high_m) = (Vec3::ZERO, Vec3::splat(0.2));
     settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0, path: vec![[0.5, 0.1, -0.2, 0.3]] }];
     settings.forces = vec![crate::solver::ObjectForce { object: 1, from_s: 0.0, to_s: 1.0, acceleration_m_s2: Vec3::new(3.0, -2.0, 1.0) }];
-    let mut solver = Solver::new(gpu, settings, &particles).expect("a solver");
     // All on one layer of the grid: `encounter` has the others.
-    solver.params.layers = 1;
+    settings.glued = true;
+    let mut solver = Solver::new(gpu, settings, &particles).expect("a solver");
     let mut count = 0;
     solver
         .edit(|s| {
@@ -160,6 +161,39 @@ fn the_sort_lists_the_same_cells_blocks_and_order() {
     let counts: Vec<u32> = gpu().read(&grid.cell_count, nodes).expect("counts");
     assert!(counts.iter().all(|&c| c == 0), "counts are left for the next sort");
     assert_eq!(solver.states().expect("states"), states, "a sort only reorders");
+}
+
+#[test]
+fn once_a_particle_has_left_the_window_none_is_sorted_or_looked_for() {
+    let (mut solver, _) = scene();
+    sort(&mut solver);
+    let matter =
+        |solver: &Solver| -> Vec<[f32; 4]> { gpu().read(&solver.buffers[solver.current].matter, 4 * solver.params.count as usize).expect("matter") };
+    let before = matter(&solver);
+    // All of them leave it: their cells are clamped to few, and each would look through all the others.
+    solver.params.origin[0] += 1000;
+    solver.start_segment();
+    sort(&mut solver);
+    assert!(gpu().read::<Control>(&solver.control, 1).expect("control")[0].watch().window);
+    assert!(before == matter(&solver), "the order that they had");
+    let (grid, nodes) = (solver.grid.clone().expect("a grid"), node_count(&solver));
+    let read = |buffer: &wgpu::Buffer| gpu().read::<u32>(buffer, nodes).expect("cells");
+    let stored = 64..64 * (1 + gpu().read::<u32>(&grid.active_blocks, 1).expect("blocks")[0] as usize);
+    assert_eq!(read(&grid.cell_start)[stored.clone()], read(&grid.cell_end)[stored]);
+    assert!(read(&grid.cell_count).iter().all(|&count| count == 0), "counts are left for the next sort");
+}
+
+#[test]
+fn what_is_seen_at_a_glance_is_the_state() {
+    let (mut solver, states) = scene();
+    sort(&mut solver);
+    let key = |x: Vec3, v: Vec3, object: u32, rest_m: f32| (x.to_array().map(f32::to_bits), v.to_array().map(f32::to_bits), object, rest_m.to_bits());
+    let glances = solver.buffers[solver.current].glance(&gpu(), states.len()).expect("a glance");
+    let mut seen: Vec<_> = glances.iter().map(|g| key(g.position_m, g.velocity_m_s, g.object, g.rest_m)).collect();
+    let mut want: Vec<_> = states.iter().map(|s| key(s.position_m, s.velocity_m_s, s.object(), s.rest_m)).collect();
+    seen.sort_unstable();
+    want.sort_unstable();
+    assert!(seen == want);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The sort: `bin`, `scan_sums`, `scan_blocks`, `count`, `scan_cells`, `scatter` and `order`, in one go.
 
 use super::base_node;
+use crate::solver::constants::DEALT;
 use crate::solver::core::Params;
 use crate::solver::state::ParticleState;
 use glam::{IVec3, UVec3};
@@ -31,7 +32,10 @@ pub fn inner(cell: UVec3) -> u32 {
 /// Sorts particles by cell, within a cell by original index.
 pub fn sort(states: &[ParticleState], params: &Params) -> Sorted {
     let cell_of = |s: &ParticleState| (base_node(s.position_m, params) - IVec3::from(params.origin)).as_uvec3();
-    let layer_of = |s: &ParticleState| s.object() % params.layers;
+    let layer_of = |s: &ParticleState| {
+        let object = (s.object() % DEALT) as usize;
+        (params.layer_of[object / 8] >> (4 * (object % 8)) & 15) % params.layers
+    };
     let mut active = BTreeSet::new();
     for s in states {
         let (low, high) = (cell_of(s).as_ivec3() - params.slack, cell_of(s).as_ivec3() + 2 + params.slack);

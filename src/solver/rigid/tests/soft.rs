@@ -1,10 +1,11 @@
 //! Bodies among soft matter: momentum, bonds, rest.
 
-use super::{advance, bodies_of, centre, floating, incline, solver, velocity};
+use super::{Settings, advance, bodies_of, centre, floating, incline, solver, velocity};
 use crate::Stop;
-use crate::solver::Particles;
 use crate::solver::substance::Substance;
 use crate::solver::validate::{block, joined, momenta, rigid_body as rigid};
+use crate::solver::{Particles, PinRegion};
+use crate::spec::{BoxShape, ColliderShape};
 use glam::Vec3;
 
 /// Makes the particles that a predicate picks a rigid part of their object.
@@ -26,6 +27,20 @@ fn a_half_rigid_body_spins_freely_with_all_it_has() {
     let after = momenta(&solver).expect("states");
     assert!((after.0 - before.0).length() < 1e-3 * before.0.length(), "{} {}", before.0, after.0);
     assert!((after.1 - before.1).length() < 5e-3 * before.1.length(), "{} {}", before.1, after.1);
+}
+
+#[test]
+fn what_a_pin_sets_off_at_once_fits_the_first_sums() {
+    // All is at rest, and the foot goes off at a metre a second: a thousand times what the scale is made for at least.
+    let size = Vec3::new(0.1, 0.1, 0.3);
+    let particles = with_rigid_part(block(Vec3::ZERO, size, 0.025, 5e4, 0.3), |p| p.z < 0.15);
+    let foot = BoxShape { centre_m: [0.05, 0.05, 0.05], size_m: [0.2, 0.2, 0.1] };
+    let path = vec![[1.0, 1.0, 0.0, 0.0]];
+    let pins = vec![PinRegion { shape: ColliderShape::Box(foot), low_m: Vec3::ZERO, high_m: size, from_s: 0.0, to_s: 1.0, path }];
+    let mut solver = solver(Settings { pins, ..floating() }, &particles);
+    let report = solver.advance(0.02, &Stop::default()).expect("an advance");
+    assert_eq!((report.retries, report.softened.len()), (0, 0), "{report:?}");
+    assert!((velocity(&bodies_of(&solver)[0]) - Vec3::X).length() < 1e-3);
 }
 
 #[test]
