@@ -4,7 +4,7 @@ use super::solver;
 use crate::Stop;
 use crate::proxy::{self, ProxyRequest, tests::pot_with_a_tendril};
 use crate::solver::substance::{Activation, Substance};
-use crate::solver::validate::{block, stems};
+use crate::solver::validate::{block, keep, stems};
 use crate::solver::{Plane, Settings};
 use crate::spec::{ElasticModel, ProxyKind};
 use glam::Vec3;
@@ -56,18 +56,7 @@ fn a_captured_pot_with_a_stem_and_a_tendril_stays_as_it_stands() {
 fn supports_that_would_have_to_pull_are_let_go_of() {
     // A table with a long overhang: the feet on the other side would have to be held down.
     let inside = |p: Vec3| p.z > 0.2 || (p.x < 0.1 || p.x > 0.25 && p.x < 0.35) && (p.y < 0.1 || p.y > 0.2);
-    let mut particles = block(Vec3::ZERO, Vec3::new(0.7, 0.3, 0.3), 0.025, 3e6, 0.3);
-    let kept: Vec<bool> = particles.position_m.iter().map(|&p| inside(p)).collect();
-    let mut keep = kept.iter();
-    particles.position_m.retain(|_| *keep.next().expect("one each"));
-    let n = particles.position_m.len();
-    particles.velocity_m_s.truncate(n);
-    particles.volume_m3.truncate(n);
-    particles.density_kg_m3.truncate(n);
-    particles.young_pa.truncate(n);
-    particles.poisson.truncate(n);
-    particles.substance.truncate(n);
-    particles.object.truncate(n);
+    let particles = keep(&block(Vec3::ZERO, Vec3::new(0.7, 0.3, 0.3), 0.025, 3e6, 0.3), inside);
     let mut settings = Settings::new(0.05);
     settings.ground = Some(Plane { height_m: 0.0, friction: 0.15, restitution: 0.0 });
     let mut solver = solver(settings, &particles);

@@ -93,6 +93,25 @@ pub(in crate::solver) fn joined(mut one: Particles, other: Particles) -> Particl
     one
 }
 
+/// The particles of one whose places a predicate picks.
+pub(in crate::solver) fn keep(all: &Particles, inside: impl Fn(Vec3) -> bool) -> Particles {
+    let picked: Vec<usize> = (0..all.len()).filter(|&i| inside(all.position_m[i])).collect();
+    fn of<T: Copy>(values: &[T], picked: &[usize]) -> Vec<T> {
+        picked.iter().map(|&i| values[i]).collect()
+    }
+    Particles {
+        position_m: of(&all.position_m, &picked),
+        velocity_m_s: of(&all.velocity_m_s, &picked),
+        volume_m3: of(&all.volume_m3, &picked),
+        density_kg_m3: of(&all.density_kg_m3, &picked),
+        young_pa: of(&all.young_pa, &picked),
+        poisson: of(&all.poisson, &picked),
+        substance: of(&all.substance, &picked),
+        substances: all.substances.clone(),
+        object: of(&all.object, &picked),
+    }
+}
+
 /// A box filled at a spacing with a liquid.
 pub(in crate::solver) fn pool(low_m: Vec3, size_m: Vec3, spacing_m: f32, density_kg_m3: f32, bulk_pa: f32, substance: Substance) -> Particles {
     let mut particles = block(low_m, size_m, spacing_m, bulk_pa, 0.0);

@@ -1,7 +1,7 @@
 //! What meets what: momentum between all kinds of matter, floating bodies (V23), thin colliders.
 
 use super::Check;
-use super::bodies::{block, joined, pool, rigid, walls};
+use super::bodies::{block, joined, keep, pool, rigid, walls};
 use super::rigid::momenta;
 use crate::Stop;
 use crate::gpu::Gpu;
@@ -23,17 +23,19 @@ enum Kind {
     Elastic,
     /// On the grid.
     Liquid,
+    /// The same, and its surface pulls.
+    Taut,
     /// Of smoothed particles.
     Sph,
 }
 
 impl Kind {
     fn block(self, low_m: Vec3, size_m: Vec3, speed_m_s: f32) -> Particles {
-        let (viscosity_pa_s, surface_tension_n_m) = (1e-3, 0.0);
+        let (viscosity_pa_s, surface_tension_n_m) = (1e-3, if self == Kind::Taut { 1.0 } else { 0.0 });
         match self {
             Kind::Rigid => rigid(block(low_m, size_m, SPACING_M, 1e5, 0.3), 0.3, 0.0),
             Kind::Elastic => block(low_m, size_m, SPACING_M, 5e4, 0.3),
-            Kind::Liquid => {
+            Kind::Liquid | Kind::Taut => {
                 let bulk_pa = liquid_bulk_pa(size_m.z, speed_m_s, GRAVITY_M_S2, LIQUID_KG_M3);
                 pool(low_m, size_m, SPACING_M, LIQUID_KG_M3, bulk_pa, Substance::Liquid { viscosity_pa_s, surface_tension_n_m })
             }
@@ -45,7 +47,7 @@ impl Kind {
     }
 }
 
-const PAIRS: [(&str, Kind, Kind); 9] = [
+const PAIRS: [(&str, Kind, Kind); 10] = [
     ("V24 momentum, rigid on rigid", Kind::Rigid, Kind::Rigid),
     ("V24 momentum, rigid on elastic", Kind::Elastic, Kind::Rigid),
     ("V24 momentum, elastic on rigid", Kind::Rigid, Kind::Elastic),
@@ -53,6 +55,7 @@ const PAIRS: [(&str, Kind, Kind); 9] = [
     ("V24 momentum, rigid on liquid of particles", Kind::Sph, Kind::Rigid),
     ("V24 momentum, elastic on elastic", Kind::Elastic, Kind::Elastic),
     ("V24 momentum, elastic on liquid", Kind::Liquid, Kind::Elastic),
+    ("V24 momentum, elastic on liquid with tension", Kind::Taut, Kind::Elastic),
     ("V24 momentum, elastic on liquid of particles", Kind::Sph, Kind::Elastic),
     ("V24 momentum, liquid on liquid of particles", Kind::Sph, Kind::Liquid),
 ];
@@ -106,21 +109,8 @@ fn submerged(gpu: &Gpu, cube: Kind, density_kg_m3: f32) -> Result<f64, SolverErr
     let low_m = Vec3::new(0.5 * (room_m.x - edge_m), 0.5 * (room_m.y - edge_m), level_m - (0.5 * CUBE as f32).round() * SPACING_M);
     let mut floating = cube.block(low_m, Vec3::splat(edge_m), 0.0);
     floating.density_kg_m3.fill(density_kg_m3);
-    let whole = Kind::Liquid.block(Vec3::ZERO, room_m, 0.0);
-    let kept: Vec<usize> = (0..whole.len()).filter(|&i| !inside(whole.position_m[i], low_m, edge_m)).collect();
-    let bulk_pa = whole.young_pa[0];
-    let liquids = kept.len();
-    let pool = Particles {
-        position_m: kept.iter().map(|&i| whole.position_m[i]).collect(),
-        velocity_m_s: vec![Vec3::ZERO; liquids],
-        volume_m3: vec![SPACING_M.powi(3); liquids],
-        density_kg_m3: vec![LIQUID_KG_M3; liquids],
-        young_pa: vec![bulk_pa; liquids],
-        poisson: vec![0.0; liquids],
-        substance: vec![0; liquids],
-        object: vec![0; liquids],
-        ..whole
-    };
+    let pool = keep(&Kind::Liquid.block(Vec3::ZERO, room_m, 0.0), |p| !inside(p, low_m, edge_m));
+    let liquids = pool.len();
     let mut settings = Settings::new(CELL_M);
     settings.ground = Some(Plane { height_m: 0.0, friction: 0.0, restitution: 0.0 });
     settings.colliders = walls(Vec3::ZERO, room_m);

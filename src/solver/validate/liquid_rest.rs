@@ -1,7 +1,7 @@
 //! Liquids that come to rest: V19 in a tank, V21 and V22 as drops.
 
 use super::Check;
-use super::bodies::{pool, walls};
+use super::bodies::{keep, pool, walls};
 use crate::Stop;
 use crate::gpu::Gpu;
 use crate::solver::core::Solver;
@@ -87,19 +87,11 @@ fn drop(radius_m: f32, spacing_m: f32, stretch: f32, bulk_pa: f32, substance: Su
     let edge_m = 2.2 * radius_m;
     // Off the lattice's nodes, as any drop is.
     let low_m = Vec3::splat(-0.5 * edge_m) + Vec3::new(0.26, 0.14, 0.0) * spacing_m;
-    let mut all = pool(low_m, Vec3::splat(edge_m), spacing_m, DENSITY_KG_M3, bulk_pa, substance);
+    let all = pool(low_m, Vec3::splat(edge_m), spacing_m, DENSITY_KG_M3, bulk_pa, substance);
+    let mut round = keep(&all, |x| x.length() < radius_m);
     let wide = stretch.sqrt().recip();
-    all.position_m.retain(|x| x.length() < radius_m);
-    let n = all.position_m.len();
-    all.position_m.iter_mut().for_each(|x| *x *= Vec3::new(wide, wide, stretch));
-    all.velocity_m_s.truncate(n);
-    all.volume_m3.truncate(n);
-    all.density_kg_m3.truncate(n);
-    all.young_pa.truncate(n);
-    all.poisson.truncate(n);
-    all.substance.truncate(n);
-    all.object.truncate(n);
-    all
+    round.position_m.iter_mut().for_each(|x| *x *= Vec3::new(wide, wide, stretch));
+    round
 }
 
 fn weightless(cell_m: f32) -> Settings {

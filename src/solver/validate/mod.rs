@@ -20,7 +20,7 @@ mod sph;
 mod waves;
 
 #[cfg(test)]
-pub(super) use bodies::{append, ball, block, joined, pool, rigid as rigid_body};
+pub(super) use bodies::{append, ball, block, joined, keep, pool, rigid as rigid_body};
 #[cfg(test)]
 pub(super) use captured::stems;
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Bodies on a device against formulas.
 
 use super::{Body, CELL_M, G, Placement, advance, bodies_of, centre, floating, incline, moving, solver, velocity};
-use crate::solver::validate::{ball, block, joined, rigid_body as rigid};
-use crate::solver::{Collider, Field, Particles, PinRegion, Settings};
+use crate::solver::validate::{ball, block, joined, keep, rigid_body as rigid};
+use crate::solver::{Collider, Field, PinRegion, Settings};
 use crate::spec::expression::{Kind, Program, parse};
 use crate::spec::{BoxShape, ColliderShape};
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
@@ -82,19 +82,7 @@ fn a_ball_rests_in_a_bowl() {
     let spacing = 0.02;
     let full = block(Vec3::new(-0.16, -0.16, 0.0), Vec3::new(0.32, 0.32, 0.16), spacing, 1e5, 0.3);
     let hollow = Vec3::new(0.0, 0.0, 0.2);
-    let kept = |i: &usize| full.position_m[*i].distance(hollow) > 0.14;
-    let picked: Vec<usize> = (0..full.len()).filter(kept).collect();
-    let bowl = Particles {
-        position_m: picked.iter().map(|&i| full.position_m[i]).collect(),
-        velocity_m_s: vec![Vec3::ZERO; picked.len()],
-        volume_m3: vec![spacing.powi(3); picked.len()],
-        density_kg_m3: vec![1000.0; picked.len()],
-        young_pa: vec![1e5; picked.len()],
-        poisson: vec![0.3; picked.len()],
-        substance: vec![0; picked.len()],
-        object: vec![0; picked.len()],
-        ..full
-    };
+    let bowl = keep(&full, |p| p.distance(hollow) > 0.14);
     let stone = rigid(ball(Vec3::new(0.002, 0.0, 0.13), 0.05, 0.0125), 0.5, 0.0);
     let mut solver = solver(incline(0.0, 0.5), &joined(rigid(bowl, 0.5, 0.0), stone));
     advance(&mut solver, 1.0);
@@ -156,18 +144,8 @@ fn runs_repeat_and_resume_to_the_bit_and_pins_hold() {
 #[test]
 fn a_ring_stays_on_its_peg() {
     let whole = block(Vec3::new(-0.1, -0.1, 0.002), Vec3::new(0.2, 0.2, 0.05), 0.0125, 1e5, 0.3);
-    let kept: Vec<usize> = (0..whole.len()).filter(|&i| whole.position_m[i].truncate().abs().max_element() > 0.05).collect();
-    let ring = Particles {
-        position_m: kept.iter().map(|&i| whole.position_m[i]).collect(),
-        volume_m3: vec![whole.volume_m3[0]; kept.len()],
-        velocity_m_s: vec![Vec3::X; kept.len()],
-        density_kg_m3: vec![1000.0; kept.len()],
-        young_pa: vec![1e5; kept.len()],
-        poisson: vec![0.3; kept.len()],
-        substance: vec![0; kept.len()],
-        object: vec![0; kept.len()],
-        ..whole
-    };
+    let mut ring = keep(&whole, |p| p.truncate().abs().max_element() > 0.05);
+    ring.velocity_m_s.fill(Vec3::X);
     let peg = BoxShape { centre_m: [0.0, 0.0, 0.1], size_m: [0.06, 0.06, 0.2] };
     let colliders = vec![Collider { shape: ColliderShape::Box(peg), friction: 0.1, restitution: 0.0 }];
     let mut solver = solver(Settings { colliders, ..incline(0.0, 0.1) }, &rigid(ring, 0.1, 0.0));

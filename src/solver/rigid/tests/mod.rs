@@ -5,9 +5,10 @@ mod change;
 mod soft;
 mod twins;
 
-use super::body::Body;
+use super::body::{Body, Contact, Manifold, Shape};
 use crate::Stop;
 use crate::gpu::Gpu;
+use crate::solver::tests::size_in_shader;
 use crate::solver::{Particles, Placement, Plane, Settings, Solver};
 use glam::{Quat, Vec3};
 
@@ -38,6 +39,15 @@ fn floating() -> Settings {
 fn incline(angle_rad: f32, friction: f32) -> Settings {
     let ground = Some(Plane { height_m: 0.0, friction, restitution: 0.0 });
     Settings { ground, gravity_m_s2: G * Vec3::new(angle_rad.sin(), 0.0, -angle_rad.cos()), ..Settings::new(CELL_M) }
+}
+
+#[test]
+fn bodies_have_the_layout_of_the_shaders() {
+    let size = |name: &str| size_in_shader("solver.rigid_solve", name);
+    assert_eq!(size("Body"), size_of::<Body>());
+    assert_eq!(size("Shape"), size_of::<Shape>());
+    assert_eq!(size("Manifold"), size_of::<Manifold>());
+    assert_eq!(size("Contact"), size_of::<Contact>());
 }
 
 fn moving(velocity_m_s: Vec3, spin_rad_s: Vec3, centre_m: Vec3) -> Placement {
