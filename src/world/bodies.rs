@@ -2,6 +2,7 @@
 
 use super::Prepared;
 use super::measure::Bodies;
+use super::occupied::occupied_m3;
 use super::region::{self, bounds};
 use super::stuff::{Stuff, Yardstick};
 use crate::proxy::{self, Solid, YoungAuto};
@@ -53,6 +54,7 @@ pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Matter {
             ranges: Vec::new(),
             mass_kg: Vec::new(),
             volume_m3: Vec::new(),
+            found: Vec::new(),
             colliders: spec.colliders.clone(),
             ground_m: prepared.ground_m,
         },
@@ -70,7 +72,17 @@ pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Matter {
     for (index, solid) in solids.iter().enumerate() {
         add(&mut matter, spec, prepared, index, solid);
     }
+    let loose = matter.sheds_shape();
+    let found = solids.iter().map(|solid| if loose { found(solid) } else { 1.0 });
+    matter.bodies.found.extend(found);
     matter
+}
+
+/// Share of a solid's volume that is found where its particles are.
+fn found(solid: &Solid) -> f64 {
+    let whole: f64 = solid.volume_m3.iter().map(|&v| f64::from(v)).sum();
+    let share = occupied_m3(solid.position_m.iter().copied().zip(solid.volume_m3.iter().copied())) / whole;
+    if share > 0.0 { share } else { 1.0 }
 }
 
 /// The piece that each particle belongs to. Of parts that overlap the later one has what both claim.

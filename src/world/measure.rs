@@ -4,6 +4,7 @@ use crate::spec::Collider;
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::occupied::occupied_m3;
 use super::prepared::support_below;
 
 /// One frame of motion on the host, particles in their original order.
@@ -13,11 +14,13 @@ pub struct MotionFrame {
     pub position_m: Vec<Vec3>,
     /// Deformation since the captured pose, G = F F0^-1.
     pub deformation: Vec<Mat3>,
-    /// Velocities and det G; empty where only the motion was kept.
+    /// Whether each keeps no shape, so that G tells no volume.
+    pub loose: Vec<bool>,
+    /// Empty where only the motion was kept.
     pub velocity_m_s: Vec<Vec3>,
 }
 
-/// Words of one particle in a motion buffer: three f32 of position, nine f16 of G - I, padding.
+/// Words of one particle in a motion buffer: three f32 of position, nine f16 of G - I, one that is 1 where it keeps no shape.
 pub const MOTION_WORDS: usize = 8;
 
 impl MotionFrame {
@@ -28,6 +31,7 @@ impl MotionFrame {
         let half = |bytes: &[u8], i: usize| half::f16::from_le_bytes([bytes[12 + 2 * i], bytes[13 + 2 * i]]).to_f32();
         MotionFrame {
             position_m: particles.clone().map(|p| Vec3::new(number(&p[0..4]), number(&p[4..8]), number(&p[8..12]))).collect(),
+            loose: particles.clone().map(|p| half(p, 9) > 0.5).collect(),
             deformation: particles
                 .map(|p| {
                     let rows: [f32; 9] = std::array::from_fn(|i| half(p, i));
@@ -57,6 +61,8 @@ pub struct Bodies {
     pub mass_kg: Vec<f32>,
     /// Undeformed volume of each particle.
     pub volume_m3: Vec<f32>,
+    /// Share of each object's volume that is found where its particles are as captured, as [`occupied_m3`] finds it.
+    pub found: Vec<f64>,
     /// Static colliders and the ground, for the gap below.
     pub colliders: Vec<Collider>,
     /// Height of the ground.
@@ -82,14 +88,15 @@ pub struct Row {
 
 /// Measures every object of one frame.
 pub fn measure(frame: &MotionFrame, bodies: &Bodies) -> Vec<Row> {
-    bodies.ranges.iter().map(|range| row(frame, bodies, range.clone())).collect()
+    bodies.ranges.iter().zip(&bodies.found).map(|(range, &found)| row(frame, bodies, range.clone(), found)).collect()
 }
 
-fn row(frame: &MotionFrame, bodies: &Bodies, range: std::ops::Range<usize>) -> Row {
+fn row(frame: &MotionFrame, bodies: &Bodies, range: std::ops::Range<usize>, found: f64) -> Row {
     if range.is_empty() {
         return Row::default();
     }
     let (x, v, g) = (&frame.position_m[range.clone()], &frame.velocity_m_s[range.clone()], &frame.deformation[range.clone()]);
+    let loose = &frame.loose[range.clone()];
     let (mass, volume) = (&bodies.mass_kg[range.clone()], &bodies.volume_m3[range]);
     let total: f64 = mass.iter().map(|&m| f64::from(m)).sum();
     let com: DVec3 = x.iter().zip(mass).map(|(x, &m)| x.as_dvec3() * f64::from(m)).sum::<DVec3>() / total;
@@ -105,7 +112,10 @@ fn row(frame: &MotionFrame, bodies: &Bodies, range: std::ops::Range<usize>) -> R
         speeds += v.length();
         fastest = fastest.max(v.length());
     }
-    let occupied: f64 = g.iter().zip(volume).map(|(g, &w)| f64::from(g.determinant()) * f64::from(w)).sum();
+    let shaped = g.iter().zip(volume).zip(loose).filter(|(_, loose)| !**loose);
+    let shaped: f64 = shaped.map(|((g, &w), _)| f64::from(g.determinant()) * f64::from(w)).sum();
+    let pours = x.iter().zip(volume).zip(loose).filter(|(_, loose)| **loose).map(|((x, w), _)| (*x, *w));
+    let occupied = shaped + occupied_m3(pours) / found;
     let captured: f64 = volume.iter().map(|&w| f64::from(w)).sum();
     let mut heights: Vec<f32> = x.iter().map(|p| p.z).collect();
     let mut stretches: Vec<f32> = g.iter().map(largest_stretch).collect();
@@ -164,7 +174,14 @@ mod tests {
     fn cube() -> (Vec<Vec3>, Bodies) {
         let points: Vec<Vec3> =
             (0..1000).map(|i| Vec3::new((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32) * 0.1 + Vec3::splat(0.05)).collect();
-        let bodies = Bodies { ranges: vec![0..1000; 1], mass_kg: vec![0.001; 1000], volume_m3: vec![0.001; 1000], colliders: vec![], ground_m: 0.0 };
+        let bodies = Bodies {
+            ranges: vec![0..1000; 1],
+            mass_kg: vec![0.001; 1000],
+            volume_m3: vec![0.001; 1000],
+            found: vec![1.0],
+            colliders: vec![],
+            ground_m: 0.0,
+        };
         (points, bodies)
     }
 
@@ -175,12 +192,19 @@ mod tests {
         let frame = MotionFrame {
             velocity_m_s: points.iter().map(|p| omega.cross(*p - centre) + Vec3::X).collect(),
             deformation: vec![Mat3::from_rotation_x(0.7) * Mat3::from_diagonal(Vec3::new(1.0, 1.5, 0.8)); 1000],
+            loose: vec![false; 1000],
             position_m: points,
         };
         let row = measure(&frame, &bodies)[0];
         assert!((DVec3::from(row.com_m) - DVec3::splat(0.5)).length() < 1e-6);
         assert!((DVec3::from(row.spin_rad_s) - omega.as_dvec3()).length() < 1e-5);
         assert!((row.volume_ratio - 1.2).abs() < 1e-5 && (row.stretch_max - 1.5).abs() < 1e-4);
+        // Of what keeps no shape it is where it is that counts.
+        let poured = MotionFrame { loose: vec![true; 1000], ..frame.clone() };
+        assert!((measure(&poured, &bodies)[0].volume_ratio - 1.0).abs() < 1e-3);
+        let crowded = MotionFrame { position_m: frame.position_m.iter().map(|p| *p * Vec3::new(1.0, 1.0, 0.5)).collect(), ..poured };
+        // A half, and what the uppermost layer of cells has room for.
+        assert!((measure(&crowded, &bodies)[0].volume_ratio - 0.6).abs() < 0.01);
         assert!((row.low_m - 0.05).abs() < 1e-6 && (row.high_m - 0.95).abs() < 1e-6 && (row.gap_m - 0.05).abs() < 1e-6);
     }
 
@@ -190,12 +214,12 @@ mod tests {
         for value in [1.0f32, -2.0, 3.5] {
             words.extend(value.to_le_bytes());
         }
-        for value in [0.5f32, 0.25, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0, 0.125, 0.0] {
+        for value in [0.5f32, 0.25, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0, 0.125, 1.0] {
             words.extend(half::f16::from_f32(value).to_le_bytes());
         }
         let frame = MotionFrame::unpack(&words, &[]);
         assert_eq!(frame.position_m, [Vec3::new(1.0, -2.0, 3.5)]);
-        assert_eq!(frame.nonfinite(), 0);
+        assert_eq!((frame.nonfinite(), frame.loose.as_slice()), (0, &[true][..]));
         assert_eq!(MotionFrame { position_m: vec![Vec3::NAN], ..frame.clone() }.nonfinite(), 1);
         assert_eq!(frame.deformation[0].row(0), Vec3::new(1.5, 0.25, 0.0));
         assert_eq!(frame.deformation[0].row(2), Vec3::new(0.0, 0.0, 1.125));

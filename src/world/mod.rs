@@ -10,6 +10,7 @@ mod facts;
 mod figure;
 mod impact;
 pub mod measure;
+mod occupied;
 mod prepared;
 mod region;
 mod resolve;
