@@ -54,6 +54,8 @@ struct Params {
     // 1.5 * 2^23, which takes the fraction from what is added to it. A constant would be added to other
     // constants first.
     rounder: f32,
+    // Nothing moves faster, m/s: the substeps of a frame would not follow.
+    speed_most: f32,
     // Bits of the layers that hold liquid.
     wet_layers: u32,
     // Layer of each object, four bits each.
@@ -220,6 +222,11 @@ fn row(s: Stencil, number: u32) -> Row {
     let inner = pick_offset(s.oy, y) + pick_offset(s.oz, z);
     let blocks = select(vec3<u32>(pick_block(s.near, beside)), vec3<u32>(pick_block(s.far, beside)), s.fx == vec3<u32>(1u));
     return Row(weights, blocks + s.ox + vec3<u32>(inner), f32(y) - s.place.y, f32(z) - s.place.z);
+}
+
+// What substeps follow of a velocity.
+fn held_back(v: vec3<f32>) -> vec3<f32> {
+    return v * min(1.0, params.speed_most / max(length(v), 1e-30));
 }
 
 // NaN and infinities by their bits: a comparison with itself is folded away by compilers.

@@ -60,12 +60,12 @@ fn velocity_change(p: Pull, dt: f32) -> vec3<f32> {
     return vec3<f32>(dot(c0, wanted), dot(cross(m[2], m[0]), wanted), dot(cross(m[0], m[1]), wanted)) / d;
 }
 
-// The velocity after it. A field brings nothing beyond FIELD_SPEED, and a change that is no number is none.
+// The velocity after it. A field brings nothing beyond FIELD_SPEED, nor what substeps follow, and a change that is no number is none.
 fn driven(v: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
     let next = v + change;
     if (!finite3(next)) {
         return v;
     }
-    let most = max(length(v), FIELD_SPEED);
+    let most = max(length(v), min(FIELD_SPEED, params.speed_most));
     return next * min(1.0, most / max(length(next), 1e-20));
 }

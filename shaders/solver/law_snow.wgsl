@@ -1,7 +1,7 @@
 // Snow (Stomakhin et al. 2013): fixed corotated, of which stretches beyond [1 - theta_c, 1 + theta_s]
 // turn plastic; packed snow is stiffer, loosened snow softer.
 //
-// values: theta_c, theta_s, hardening. History: det of the plastic part of F.
+// values: theta_c, theta_s, hardening, the most that it stiffens by. History: det of the plastic part of F.
 fn snow(s: Substance, trial: mat3x3<f32>, history: f32, mu: f32, lambda: f32) -> Answer {
     let axes = svd(trial);
     let kept = clamp(axes.s, vec3<f32>(1.0 - s.values[0]), vec3<f32>(1.0 + s.values[1]));

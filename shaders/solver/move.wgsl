@@ -46,10 +46,12 @@ fn moved(i: u32, m: Matter, gathered: Gathered, alive: bool) -> Moved {
     var v = gathered.v + substep.dt_s * objects[tag & 0xffffu].xyz;
 
     // Whatever got behind a surface is put back on it and keeps no inward velocity.
-    // Liquid that stands nearer to one than it rests comes no nearer.
+    // Liquid that stands nearer to one than it rests comes no nearer. The ground has the last word: where
+    // surfaces leave no room between them nothing passes it.
     let rest_m = min(label.z, 0.0);
     let slips = m.mu == 0.0;
-    for (var c = 0u; c < params.collider_count; c++) {
+    for (var k = params.collider_count; k > 0u; k--) {
+        let c = k - 1u;
         let t = touch(colliders[c], x);
         let before_m = touch(colliders[c], position.xyz).distance_m;
         let nearest_m = select(rest_m, clamp(before_m, 0.0, max(label.z, 0.0)), slips);
@@ -59,6 +61,7 @@ fn moved(i: u32, m: Matter, gathered: Gathered, alive: bool) -> Moved {
             v -= normal * min(dot(v, normal), 0.0);
         }
     }
+    v = held_back(v);
 
     let row = row_of(tag);
     let substance = substances[row];

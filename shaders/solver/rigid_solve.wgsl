@@ -241,8 +241,13 @@ fn drive(b: u32) {
     }
     momentum += mass * take_driven(12u * b);
     turning += mass * shape.radius_m * take_driven(12u * b + 6u);
-    let v = body.velocity.xyz + momentum / mass + substep.dt_s * (params.gravity_m_s2 + objects[shape.object].xyz);
+    let driven_v = body.velocity.xyz + momentum / mass + substep.dt_s * (params.gravity_m_s2 + objects[shape.object].xyz);
     body.angular_momentum += vec4<f32>(turning, 0.0);
+    // As `held_back`, for its rim.
+    let rim = shape.radius_m * length(spin_of(shape.inverse, body.turn, body.angular_momentum.xyz));
+    let followed = min(1.0, params.speed_most / max(length(driven_v) + rim, 1e-30));
+    let v = driven_v * followed;
+    body.angular_momentum *= followed;
     bodies[b].angular_momentum = body.angular_momentum;
     speed[b] = vec4<f32>(v, 1.0 / mass);
     spin[b] = vec4<f32>(spin_of(shape.inverse, body.turn, body.angular_momentum.xyz), 0.0);

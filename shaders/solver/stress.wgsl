@@ -22,7 +22,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let tau = respond(substances[row], read_deformation(i), matter[3u * n + i].w, matter[i].w, matter[n + i].w, flow).tau;
     let weight = substep.dt_next_s * 4.0 * params.per_m * params.per_m * matter[2u * n + i].w;
     let affine = read_affine(i) - weight * tau;
-    let v = kinematics[n + i].xyz;
+    let v = held_back(kinematics[n + i].xyz);
     write_motion(i, v, affine);
     atomicMax(&control.momentum[substep.index & 3u], bitcast<u32>(momentum_measure(kinematics[i].w, v, affine)));
 }

@@ -58,7 +58,7 @@ fn capillary_modulus(s: Substance, per_m: f32) -> f32 {
     return select(0.0, 6.2831853 * s.values[1] * per_m, s.kind == LIQUID);
 }
 
-// Stomakhin et al. 2013: what is packed is stiffer. `packing` is the plastic part of det F.
+// Stomakhin et al. 2013: what is packed is stiffer, as far as substeps follow. `packing` is the plastic part of det F.
 fn snow_stiffening(s: Substance, packing: f32) -> f32 {
-    return exp(s.values[2] * (1.0 - packing));
+    return min(exp(s.values[2] * (1.0 - packing)), s.values[3]);
 }

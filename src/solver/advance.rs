@@ -1,12 +1,12 @@
 //! Going on in time: segments of whole substeps, watched, rolled back and run again.
 
 use super::budget;
-use super::constants::FIXED_BITS_RETREAT;
 use super::core::Solver;
 use super::fields::Fields;
 use super::grid::GridBuffers;
 use super::obstacles;
 use super::types::{Advance, SolverError};
+use super::wary::HALVINGS;
 use super::watch::{Control, Watch};
 use crate::Stop;
 use crate::gpu::{Readback, Recording, Tier};
@@ -61,10 +61,12 @@ impl Plan {
 
 /// Two times closer than this are one.
 const SAME_TIME_S: f64 = 1e-9;
-/// Substeps are halved this often before a material is softened.
-const HALVINGS: u32 = 3;
 /// A material is softened this often before the run is given up.
-const SOFTENINGS: u32 = 3;
+const SOFTENINGS: u32 = 6;
+/// Bodies that fall fast through little may take substeps shorter than stiffness may: they cost little.
+const BODY_SHARE: f64 = 0.125;
+/// A segment's window gets so many times the room that it should need at most.
+const ROOM_MOST: i32 = 8;
 /// Cells that anything may travel in one segment.
 const SEGMENT_CELLS: f64 = 32.0;
 /// Sorting is amortised over at most so many substeps. Runs of equal cells break up meanwhile, and what
@@ -87,17 +89,32 @@ enum Outcome {
     Stopped,
 }
 
+/// How often one segment was tried.
+struct Tries {
+    /// The window's margin is so many times what it should need.
+    room: i32,
+    softenings: u32,
+    trips: u32,
+}
+
+/// How a segment that failed is run again.
+enum WayOn {
+    /// With more room for something, or substeps for a higher speed.
+    Wider,
+    /// In substeps half as long.
+    Shorter,
+    /// With softer matter.
+    Softer,
+    None,
+}
+
 impl Solver {
     /// Goes on exactly to `to_s`. The state is then at the end of the last substep before it; where it
     /// was stopped, or fails, at the last frame or cut before that.
     pub fn advance(&mut self, to_s: f64, stop: &Stop) -> Result<Advance, SolverError> {
         let mut report = Advance { dt_min_s: f64::INFINITY, softened: std::mem::take(&mut self.softened), ..Default::default() };
         while self.time_s < to_s - SAME_TIME_S && !report.stopped {
-            let scales = (self.params.mass_units, self.params.momentum_bits);
-            let result = self.segment(to_s, stop, &mut report);
-            // Wider sums were for that segment alone: what comes later starts as from a checkpoint.
-            (self.params.mass_units, self.params.momentum_bits) = scales;
-            result?;
+            self.segment(to_s, stop, &mut report)?;
         }
         if report.substeps == 0 {
             report.dt_min_s = 0.0;
@@ -114,16 +131,18 @@ impl Solver {
         }
         let mut seen = self.look()?;
         self.backup();
-        let (mut halvings, mut softenings, mut room) = (0, 0, 1);
+        let mut tries = Tries { room: 1, softenings: 0, trips: 0 };
         loop {
             let acceleration_m_s2 = self.set_surroundings();
             let pins_m_s = self.pin_speed_m_s();
             (seen.driven_m_s, seen.drift_m_s) = (seen.driven_m_s.max(pins_m_s), seen.drift_m_s.max(pins_m_s));
-            let mut plan = self.plan(&seen, until_s, frame_end_s, acceleration_m_s2, halvings);
+            let mut plan = self.plan(&seen, until_s, frame_end_s, acceleration_m_s2, self.wary.halvings);
+            // Who moves farther than was thought is found again sooner.
+            plan.sort_every = if tries.trips > 0 { 1 } else { plan.sort_every };
             if f64::from(plan.substeps) > budget::SUBSTEPS_MOST {
                 return Err(SolverError::TooFast {
                     time_s: self.time_s,
-                    speed_m_s: seen.speed_m_s,
+                    speed_m_s: seen.speed_m_s.max(pins_m_s),
                     cell_m: self.settings.cell_m,
                     substeps: plan.substeps,
                 });
@@ -131,6 +150,7 @@ impl Solver {
             // What is fast takes its frame in several segments, so that the grid need not hold all of its way. Where
             // they end goes by the whole frame: a cut changes nothing before itself.
             let speed_m_s = f64::from(seen.speed_m_s + seen.drift_m_s) + f64::from(acceleration_m_s2) * (frame_end_s - self.time_s);
+            let speed_m_s = speed_m_s.min(self.speed_most_m_s(pins_m_s));
             let at_once = SEGMENT_CELLS * f64::from(self.settings.cell_m) / (speed_m_s * f64::from(plan.dt_s)).max(1e-12);
             if f64::from(plan.substeps) > at_once {
                 plan = Plan { substeps: (at_once as u32).max(1), last_dt_s: plan.dt_s, ..plan };
@@ -138,11 +158,12 @@ impl Solver {
             }
             self.ask_fields_at(until_s);
             let reach_m = (speed_m_s * (until_s - self.time_s)) as f32;
-            let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + self.params.slack + 3) * room;
+            let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + self.params.slack + 3) * tries.room;
             self.fit_window(seen.low, if self.soft { seen.high } else { seen.low }, margin)?;
             self.make_room(seen.blocks + seen.blocks / 8)?;
+            tracing::debug!(time_s = self.time_s, until_s, dt_s = plan.dt_s, substeps = plan.substeps, speed_m_s, wary = ?self.wary, "segment");
             let (start, order) = (self.substep, self.current);
-            let outcome = self.run(&plan, stop)?;
+            let outcome = self.run(&plan, stop, tries.trips > 0)?;
             let Outcome::Done(now) = outcome else {
                 self.roll_back(start, order);
                 report.stopped = true;
@@ -158,42 +179,83 @@ impl Solver {
             let Some(reason) = now.trip(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m) else {
                 self.time_s = until_s;
                 self.seen = Some(now);
-                self.report_fields(report);
-                report.substeps += u64::from(plan.substeps);
-                report.dt_min_s = report.dt_min_s.min(f64::from(plan.dt_s.min(plan.last_dt_s)));
-                report.dt_max_s = report.dt_max_s.max(f64::from(plan.dt_s.max(plan.last_dt_s)));
+                if (until_s - frame_end_s).abs() < SAME_TIME_S {
+                    self.wary.frame_ends();
+                    self.set_wary(self.wary);
+                }
+                self.report(&plan, &now, report);
                 return Ok(());
             };
             tracing::debug!(time_s = self.time_s, dt_s = plan.dt_s, reason, "rolled back");
             self.roll_back(start, order);
             report.retries += 1;
-            if now.window {
-                room *= 2;
-            }
-            // Nor are longer lists.
-            if now.crowded && self.lengthen_lists()? {
-                continue;
-            }
-            if now.overflow {
-                self.params.momentum_bits -= FIXED_BITS_RETREAT;
-                self.params.mass_units *= 0.5f32.powi(FIXED_BITS_RETREAT as i32);
-            }
-            // A field that drove faster than it was thought to; at most to the speed that fields end at.
-            if self.fields.is_some() && now.peak_speed_m_s.is_finite() {
-                seen.driven_m_s = seen.driven_m_s.max(now.peak_speed_m_s);
-            }
-            if halvings < HALVINGS {
-                halvings += 1;
-            } else if softenings < SOFTENINGS {
-                softenings += 1;
-                self.soften(now.suspects, &reason)?;
-                report.softened.append(&mut self.softened);
-                self.backup();
-                seen = self.look()?;
-            } else {
-                return Err(SolverError::Unstable { time_s: self.time_s, dt_s: f64::from(plan.dt_s), reason });
+            self.wary.trouble();
+            tries.trips += 1;
+            let now = now.sane(self.params.speed_most);
+            let faster = now.peak_speed_m_s > 1.1 * speed_m_s as f32;
+            // Nothing is faster than what is affordable to follow.
+            (seen.driven_m_s, seen.drift_m_s) = (seen.driven_m_s.max(now.peak_speed_m_s), seen.drift_m_s.max(now.peak_speed_m_s));
+            match self.way_on(&now, &plan, faster, &mut tries)? {
+                WayOn::Wider => {}
+                WayOn::Shorter => self.wary.halvings += 1,
+                WayOn::Softer => {
+                    self.soften(now.suspects, &reason)?;
+                    report.softened.append(&mut self.softened);
+                    self.backup();
+                    seen = Watch { driven_m_s: seen.driven_m_s, drift_m_s: seen.drift_m_s, ..self.look()? };
+                }
+                WayOn::None => return Err(SolverError::Unstable { time_s: self.time_s, dt_s: f64::from(plan.dt_s), reason }),
             }
         }
+    }
+
+    /// What is done about a segment that failed. Room costs little; substeps half as long cost as many again, which
+    /// is worth it while a frame's budget lasts; beyond that what cannot be resolved is softened, at the same cost.
+    fn way_on(&mut self, now: &Watch, plan: &Plan, faster: bool, tries: &mut Tries) -> Result<WayOn, SolverError> {
+        if now.window && tries.room < ROOM_MOST {
+            tries.room *= 2;
+        }
+        // Longer lists are no matter of the time step.
+        if now.crowded && self.lengthen_lists()? {
+            return Ok(WayOn::Wider);
+        }
+        // Nor are wider sums, where nothing else is wrong.
+        if now.overflow && self.wary.widen() {
+            self.set_wary(self.wary);
+            if f64::from(now.peak_speed_m_s * plan.dt_s) <= f64::from(self.settings.cell_m) {
+                return Ok(WayOn::Wider);
+            }
+        }
+        // Nor is it known yet whether substeps for the speed that things came to do.
+        if faster && tries.trips <= 2 {
+            return Ok(WayOn::Wider);
+        }
+        let shortest_s = budget::shortest_s(&self.settings);
+        let affordable = self.wary.halvings == 0 || 0.5 * f64::from(plan.dt_s) >= 0.5 * shortest_s;
+        Ok(match () {
+            _ if self.wary.halvings < HALVINGS && affordable => WayOn::Shorter,
+            _ if tries.softenings < SOFTENINGS => {
+                tries.softenings += 1;
+                WayOn::Softer
+            }
+            _ => WayOn::None,
+        })
+    }
+
+    /// Adds a segment that held.
+    fn report(&self, plan: &Plan, now: &Watch, report: &mut Advance) {
+        self.report_fields(report);
+        report.substeps += u64::from(plan.substeps);
+        report.dt_min_s = report.dt_min_s.min(f64::from(plan.dt_s.min(plan.last_dt_s)));
+        report.dt_max_s = report.dt_max_s.max(f64::from(plan.dt_s.max(plan.last_dt_s)));
+        if now.peak_speed_m_s >= 0.999 * self.params.speed_most {
+            report.held_m_s = self.params.speed_most;
+        }
+    }
+
+    /// The fastest that anything is followed, but for pins.
+    fn speed_most_m_s(&self, pins_m_s: f32) -> f64 {
+        f64::from(self.params.speed_most.max(pins_m_s))
     }
 
     /// The next time, up to `until_s`, at which a force or a pin begins or ends.
@@ -248,15 +310,17 @@ impl Solver {
         let cell_m = f64::from(self.settings.cell_m);
         let left_s = frame_end_s - self.time_s;
         let speed_m_s = f64::from(seen.speed_m_s + seen.driven_m_s) + f64::from(acceleration_m_s2) * left_s;
+        let speed_m_s = speed_m_s.min(self.speed_most_m_s(self.pin_speed_m_s()));
+        let shortest_s = budget::shortest_s(&self.settings);
         let courant_m = f64::from(self.settings.cfl) * cell_m;
         // Laws that stiffen as they go may ask for more than is carried; the watch sees what comes of it.
-        let wave_m_s = f64::from(seen.wave_speed_m_s).min(courant_m / budget::shortest_s(&self.settings));
+        let wave_m_s = f64::from(seen.wave_speed_m_s).min(courant_m / shortest_s);
         let halved = f64::from(1u32 << halvings);
         let limit_s = courant_m / (wave_m_s + speed_m_s) / halved;
         let limit_s = self.sph().map_or(limit_s, |sph| {
-            limit_s.min(sph.limit_s(0.5 * cell_m, f64::from(self.settings.cfl), speed_m_s, f64::from(acceleration_m_s2)) / halved)
+            limit_s.min(sph.limit_s(0.5 * cell_m, f64::from(self.settings.cfl), speed_m_s, f64::from(acceleration_m_s2), shortest_s) / halved)
         });
-        let rigid_s = self.rigid.as_ref().map_or(f64::INFINITY, |r| r.longest_step_s(acceleration_m_s2)) / f64::from(1u32 << halvings);
+        let rigid_s = self.rigid.as_ref().map_or(f64::INFINITY, |r| r.longest_step_s(acceleration_m_s2).max(BODY_SHARE * shortest_s)) / halved;
         let dt_s = left_s / (left_s / limit_s.min(rigid_s)).ceil().max(1.0);
         let parts = (until_s - self.time_s) / dt_s;
         let whole = (parts + 1e-6).floor();
@@ -318,7 +382,8 @@ impl Solver {
 
     /// Runs the substeps of a plan from the present state. The queue is kept full: a batch is recorded
     /// while the one before it runs.
-    fn run(&mut self, plan: &Plan, stop: &Stop) -> Result<Outcome, SolverError> {
+    /// `watched`: ends as soon as something went wrong, at the cost of a read-back a batch.
+    fn run(&mut self, plan: &Plan, stop: &Stop, watched: bool) -> Result<Outcome, SolverError> {
         self.set_activations(plan)?;
         let bound = self.bind_both()?;
         self.start_segment();
@@ -345,6 +410,13 @@ impl Solver {
             }
             if stop.raised() {
                 return Ok(Outcome::Stopped);
+            }
+            if watched && end < plan.substeps {
+                let so_far = self.gpu.read::<Control>(&self.control, 1)?.first().map(Control::watch);
+                let travel_m = self.params.slack as f32 * self.settings.cell_m;
+                if let Some(now) = so_far.filter(|now| now.went_wrong(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m)) {
+                    return Ok(Outcome::Done(now));
+                }
             }
             step = end;
         }
@@ -390,11 +462,13 @@ impl Solver {
         self.gpu.submit(&recording);
     }
 
-    /// Halves the moduli of the suspect objects, or of all where none stands out.
-    fn soften(&mut self, suspects: u32, reason: &str) -> Result<(), SolverError> {
+    /// Softens the suspect objects, or all where none stands out.
+    pub(super) fn soften(&mut self, suspects: u32, reason: &str) -> Result<(), SolverError> {
         let mut states = self.states()?;
         let suspect = |object: u32| suspects == 0 || suspects >> (object & 31) & 1 != 0;
-        self.softened.extend(budget::halve(&mut states, suspect, self.time_s, reason));
+        let mut substances = self.laws.substances.clone();
+        self.softened.extend(budget::soften(&mut states, &mut substances, suspect, self.time_s, reason));
+        self.set_substances(&substances)?;
         self.replace(states);
         Ok(())
     }

@@ -5,16 +5,18 @@
 //! stiffness too. So what would need more substeps than a frame may have is softened to what they carry,
 //! and that is said.
 
+use super::constants::PACKING_LEAST;
+use super::sph;
 use super::state::ParticleState;
 use super::substance::Substance;
 use super::types::{Settings, Softened, Taut};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Substeps that a fiftieth of a second, or a shorter frame, may take for the sake of stiffness.
-const SUBSTEPS_A_FRAME: f64 = 4000.0;
-/// Frames longer than this have more of them.
+/// Frames longer than this have more substeps than `substeps_most`.
 const FRAME_S: f64 = 0.02;
-/// Substeps that a frame may take at all: what is faster than this passes through thousands of cells in it.
+/// Share of its stiffness that softening leaves: waves are half as fast.
+const SOFTER: f32 = 0.25;
+/// Substeps that a frame may take at all: a pin that is faster than this passes through thousands of cells in it.
 pub(super) const SUBSTEPS_MOST: f64 = 200_000.0;
 
 /// Speed of compression waves by the moduli alone, sqrt((lambda + 2 mu) / rho).
@@ -28,9 +30,15 @@ fn young_pa(s: &ParticleState) -> f32 {
     if mu > 0.0 { mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu) } else { lambda }
 }
 
-/// Shortest substep that is taken for the sake of stiffness.
+/// Shortest substep that is taken for the sake of stiffness, where a fiftieth of a second or a shorter frame may take
+/// `substeps_most`.
+pub fn shortest_substep_s(frame_s: f64, substeps_most: u32) -> f64 {
+    frame_s.min(FRAME_S) / f64::from(substeps_most)
+}
+
+/// The same of a solver.
 pub(super) fn shortest_s(settings: &Settings) -> f64 {
-    settings.frame_s.min(FRAME_S) / SUBSTEPS_A_FRAME
+    shortest_substep_s(settings.frame_s, settings.substeps_most)
 }
 
 /// Softens what is stiffer than the shortest substep carries; what was softened, one entry an object.
@@ -62,10 +70,15 @@ pub(super) fn afford(states: &mut [ParticleState], settings: &Settings, time_s: 
 /// Lowers surface tensions whose shortest waves, as long as a cell, outrun the shortest substep: their
 /// modulus is 2 pi sigma / cell. What was lowered, one entry an object.
 pub(super) fn slacken(substances: &mut [Substance], states: &[ParticleState], settings: &Settings, time_s: f64) -> Vec<Softened> {
-    let per_density = fastest_m_s(settings).powi(2) * settings.cell_m / std::f32::consts::TAU;
+    let on_grid = fastest_m_s(settings).powi(2) * settings.cell_m / std::f32::consts::TAU;
+    let beside = sph::tension_over_density(settings.cell_m, shortest_s(settings)) as f32;
     let mut softened: BTreeMap<u32, Softened> = BTreeMap::new();
     for s in states {
-        let Some(Substance::Liquid { surface_tension_n_m, .. }) = substances.get_mut(s.substance()) else { continue };
+        let (surface_tension_n_m, per_density) = match substances.get_mut(s.substance()) {
+            Some(Substance::Liquid { surface_tension_n_m, .. }) => (surface_tension_n_m, on_grid),
+            Some(Substance::SphLiquid { surface_tension_n_m, .. }) => (surface_tension_n_m, beside),
+            _ => continue,
+        };
         let factor = per_density * s.mass_kg / s.volume_m3 / surface_tension_n_m.max(f32::MIN_POSITIVE);
         if factor > 0.999 {
             continue;
@@ -79,8 +92,30 @@ pub(super) fn slacken(substances: &mut [Substance], states: &[ParticleState], se
     softened.into_values().collect()
 }
 
-/// Speed of the fastest wave that the shortest substep follows.
-fn fastest_m_s(settings: &Settings) -> f32 {
+/// By how much each substance may stiffen as it packs, and what of that is less than it asks for, one entry an object.
+pub(super) fn stiffenings(substances: &[Substance], states: &[ParticleState], settings: &Settings, time_s: f64) -> (Vec<f32>, Vec<Softened>) {
+    let fastest_m_s = fastest_m_s(settings);
+    let mut most = vec![f32::MAX; substances.len()];
+    let mut softened: BTreeMap<u32, Softened> = BTreeMap::new();
+    for s in states {
+        let Some(Substance::Snow { hardening, .. }) = substances.get(s.substance()) else { continue };
+        let asked = (hardening * (1.0 - PACKING_LEAST)).exp();
+        let carried = (fastest_m_s / wave_speed_m_s(s)).powi(2).max(1.0);
+        if carried >= asked {
+            continue;
+        }
+        let value = &mut most[s.substance()];
+        *value = value.min(carried);
+        let new = Softened { object: s.object(), what: Taut::Hardening, factor: 1.0, value: *value, time_s, reason: reason(settings) };
+        let entry = softened.entry(s.object()).or_insert(new);
+        (entry.factor, entry.value) = (entry.factor.min(carried / asked), entry.value.min(*value));
+    }
+    (most, softened.into_values().collect())
+}
+
+/// Speed of the fastest wave that the shortest substep follows. Nor does anything move faster, which no frame would show: at 4000
+/// substeps that is 1600 cells from one to the next. So a frame ends in bounded time whatever drives it.
+pub(super) fn fastest_m_s(settings: &Settings) -> f32 {
     (f64::from(settings.cfl) * f64::from(settings.cell_m) / shortest_s(settings)) as f32
 }
 
@@ -88,15 +123,32 @@ fn reason(settings: &Settings) -> String {
     format!("with more, it would take substeps under {:.1e} s", shortest_s(settings))
 }
 
-/// Halves the moduli of the objects that a predicate picks.
-pub(super) fn halve(states: &mut [ParticleState], picked: impl Fn(u32) -> bool, time_s: f64, reason: &str) -> Vec<Softened> {
-    let mut softened: BTreeMap<u32, Softened> = BTreeMap::new();
+/// Takes most of the stiffness, and of the surface tension, of the objects that a predicate picks.
+pub(super) fn soften(
+    states: &mut [ParticleState],
+    substances: &mut [Substance],
+    picked: impl Fn(u32) -> bool,
+    time_s: f64,
+    reason: &str,
+) -> Vec<Softened> {
+    let mut softened: BTreeMap<(u32, bool), Softened> = BTreeMap::new();
+    let new = |object, what, value| Softened { object, what, factor: SOFTER, value, time_s, reason: reason.to_owned() };
+    let mut rows = BTreeSet::new();
     for s in states.iter_mut().filter(|s| picked(s.object())) {
-        s.mu_pa *= 0.5;
-        s.lambda_pa *= 0.5;
-        let new = Softened { object: s.object(), what: Taut::Stiffness, factor: 0.5, value: 0.0, time_s, reason: reason.to_owned() };
-        let entry = softened.entry(s.object()).or_insert(new);
-        entry.value = entry.value.max(young_pa(s));
+        let row = s.substance();
+        if let Some(Substance::Liquid { surface_tension_n_m: sigma, .. } | Substance::SphLiquid { surface_tension_n_m: sigma, .. }) =
+            substances.get_mut(row).filter(|_| rows.insert(row))
+            && *sigma > 0.0
+        {
+            *sigma *= SOFTER;
+            softened.insert((s.object(), true), new(s.object(), Taut::SurfaceTension, *sigma));
+        }
+        if s.lambda_pa + s.mu_pa > 0.0 {
+            s.mu_pa *= SOFTER;
+            s.lambda_pa *= SOFTER;
+            let entry = softened.entry((s.object(), false)).or_insert_with(|| new(s.object(), Taut::Stiffness, 0.0));
+            entry.value = entry.value.max(young_pa(s));
+        }
     }
     softened.into_values().collect()
 }

@@ -4,6 +4,7 @@ use super::core::Solver;
 use super::state::{PLANES, ParticleState, unpack};
 use super::substance::Substance;
 use super::types::SolverError;
+use super::wary::Wary;
 use crate::gpu::{Gpu, Readback};
 use bytemuck::{Pod, Zeroable};
 
@@ -22,6 +23,7 @@ struct Header {
     table_bytes: u64,
     /// Rigid bodies.
     bodies: u64,
+    wary: Wary,
 }
 
 /// A state on its way back from the device; [`Checkpoint::bytes`] can wait for it on another thread.
@@ -64,7 +66,8 @@ impl Solver {
         let table = serde_json::to_vec(&self.laws.substances).map_err(|e| SolverError::Checkpoint { what: e.to_string() })?;
         let table_bytes = table.len() as u64;
         let bodies = self.rigid.as_ref().map_or(0, |r| r.count() as u64);
-        let header = Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s, table_bytes, bodies };
+        let header =
+            Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s, table_bytes, bodies, wary: self.wary };
         let head = [bytemuck::bytes_of(&header), &table].concat();
         // A change may have made them on the way.
         let anchors = bytemuck::cast_slice(self.rigid.as_ref().map_or(&[][..], |r| &r.anchors_host)).to_vec();
@@ -126,6 +129,7 @@ impl Solver {
             kept.write(&self.gpu, content);
             rest = more;
         }
+        self.set_wary(header.wary);
         self.substep = header.substep;
         self.time_s = header.time_s;
         Ok(())

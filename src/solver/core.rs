@@ -16,6 +16,7 @@ use super::state::{self, ParticleState, StateBuffers};
 use super::transfer::Transfers;
 use super::types::{Particles, Placement, Settings, Softened, SolverError};
 use super::volume::VolumePasses;
+use super::wary::{self, Wary};
 use super::watch::{Control, Watch};
 use crate::gpu::{Gpu, Recording, Tier};
 use crate::spec::limits;
@@ -52,6 +53,7 @@ pub(super) struct Params {
     pub item_particles: u32,
     pub mixes: u32,
     pub rounder: f32,
+    pub speed_most: f32,
     pub wet_layers: u32,
     pub layer_of: [u32; DEALT as usize / 8],
 }
@@ -114,6 +116,9 @@ pub struct Solver {
     pub(super) softened: Vec<Softened>,
     pub(super) time_s: f64,
     pub(super) substep: u32,
+    /// What trouble taught.
+    pub(super) wary: Wary,
+    pub(super) heaviest_kg: f32,
 }
 
 impl Solver {
@@ -133,7 +138,7 @@ impl Solver {
             gravity_m_s2: settings.gravity_m_s2.into(),
             cell_m: settings.cell_m,
             per_m: 1.0 / settings.cell_m,
-            mass_units: 2f32.powi(FIXED_BITS as i32 - heaviest_kg.log2().ceil() as i32),
+            mass_units: wary::mass_units(heaviest_kg, 0),
             momentum_bits: FIXED_BITS,
             reach_m: REACH_CELLS * settings.cell_m,
             has_ground: u32::from(settings.ground.is_some()),
@@ -143,6 +148,7 @@ impl Solver {
             },
             item_particles: if n < FEW_PARTICLES { TILE_LANES } else { 2 * TILE_LANES },
             rounder: 12_582_912.0,
+            speed_most: budget::fastest_m_s(&settings),
             seed: (settings.seed ^ settings.seed >> 32) as u32,
             // Scales are made for at least a millimetre a second.
             momentum_floor: heaviest_kg * 1e-3,
@@ -182,12 +188,14 @@ impl Solver {
             softened,
             time_s: 0.0,
             substep: 0,
+            wary: Wary::default(),
+            heaviest_kg,
             gpu: gpu.clone(),
             settings,
             params,
         };
         solver.set_substances(&particles.substances)?;
-        solver.scale_liquids(&states);
+        solver.afford_substances(&states);
         solver.survey(&states);
         solver.watch_volumes(&states);
         solver.buffers[0].upload(gpu, &states);
@@ -312,7 +320,7 @@ impl Solver {
     /// Writes all particles, in their original order; none stiffer than the time step affords.
     pub(super) fn replace(&mut self, mut states: Vec<ParticleState>) {
         self.softened.extend(budget::afford(&mut states, &self.settings, self.time_s));
-        self.scale_liquids(&states);
+        self.afford_substances(&states);
         self.buffers[self.current].upload(&self.gpu, &states);
         self.survey(&states);
         self.watch_volumes(&states);

@@ -101,6 +101,10 @@ const CPU_GRID_BYTES: u64 = 768 << 20;
 const GPU_GRID_BYTES: u64 = 6 << 30;
 /// Of these, what the window may take.
 const SPREAD_SHARE: u64 = 4;
+/// Cells from the origin that anything may be: f32 tells a sixteenth of a cell there.
+const LATTICE_MOST: i32 = 1 << 20;
+/// The same of bodies alone, whose places are finer: that far whole numbers count cells.
+const BODIES_MOST: i32 = 1 << 28;
 /// Workgroups along an axis that every device runs.
 pub(super) const GROUPS_MOST: u64 = 65_535;
 
@@ -212,6 +216,11 @@ impl Solver {
     pub(super) fn fit_window(&mut self, low: IVec3, high: IVec3, margin: i32) -> Result<(), SolverError> {
         if self.window.is_some_and(|w| w.holds(low, high, margin)) {
             return Ok(());
+        }
+        let (lowest, highest) = (low.as_i64vec3().min_element(), high.as_i64vec3().max_element());
+        let most = if self.soft { LATTICE_MOST } else { BODIES_MOST };
+        if lowest.abs().max(highest.abs()) + i64::from(margin) > i64::from(most) {
+            return Err(SolverError::TooFar { cell_m: self.settings.cell_m, allowed_m: most as f32 * self.settings.cell_m });
         }
         // Some more room than is needed now, so that a window lasts many frames; where that does not
         // fit, what is needed.

@@ -41,6 +41,8 @@ pub(super) struct Laws {
     none_shown: wgpu::Buffer,
     /// Whether the passes know more than the elastic law.
     pub all: bool,
+    /// By how much each row may stiffen as it packs.
+    pub stiffenings: Vec<f32>,
 }
 
 impl Laws {
@@ -53,6 +55,7 @@ impl Laws {
             shown: None,
             none_shown: gpu.storage::<Rows>("solver.none_shown", 1)?,
             all: false,
+            stiffenings: Vec::new(),
         })
     }
 
@@ -79,6 +82,7 @@ impl Solver {
         }
         self.laws.table = self.gpu.storage_from("solver.substances", &padded(&substance::records(substances), 1))?;
         self.laws.substances = substances.to_vec();
+        self.laws.stiffenings.clear();
         if !self.laws.all && !substances.iter().all(Substance::is_plain) {
             let LawPasses { stress_laws, prestress_gather_laws } = LawPasses::new(&self.gpu);
             self.passes.stress = stress_laws;

@@ -75,14 +75,25 @@ impl Solver {
         (self.grid, self.window) = (None, None);
     }
 
-    /// The fixed-point units of the liquids' properties, from the particles that have most of them; no
-    /// more surface tension than the time step affords.
-    pub(super) fn scale_liquids(&mut self, states: &[ParticleState]) {
+    /// No more surface tension and hardening than the time step affords.
+    pub(super) fn afford_substances(&mut self, states: &[ParticleState]) {
         let slackened = budget::slacken(&mut self.laws.substances, states, &self.settings, self.time_s);
-        if !slackened.is_empty() {
-            self.gpu.upload(&self.laws.table, &substance::records(&self.laws.substances));
-            self.softened.extend(slackened);
+        let (stiffenings, capped) = budget::stiffenings(&self.laws.substances, states, &self.settings, self.time_s);
+        let news = stiffenings != self.laws.stiffenings;
+        if news || !slackened.is_empty() {
+            let records = substance::records(&self.laws.substances).into_iter().zip(&stiffenings);
+            self.gpu.upload(&self.laws.table, &records.map(|(record, most)| record.stiffened_to(*most)).collect::<Vec<_>>());
         }
+        self.softened.extend(slackened);
+        if news {
+            self.softened.extend(capped);
+        }
+        self.laws.stiffenings = stiffenings;
+        self.scale_liquids(states);
+    }
+
+    /// The fixed-point units of the liquids' properties, from the particles that have most of them.
+    fn scale_liquids(&mut self, states: &[ParticleState]) {
         let (mut tension, mut viscosity) = (0f32, 0f32);
         for state in states {
             if let Some(Substance::Liquid { viscosity_pa_s, surface_tension_n_m }) = self.laws.substances.get(state.substance()) {

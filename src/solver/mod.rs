@@ -34,6 +34,7 @@ mod transfer;
 mod types;
 pub mod validate;
 mod volume;
+mod wary;
 mod watch;
 
 use crate::gpu::{Gpu, KernelSource};
@@ -44,6 +45,7 @@ mod tests;
 mod twin;
 
 pub use bench::{BenchReport, bench_mixture, bench_sph, bench_sph_second, bench_substep};
+pub use budget::shortest_substep_s;
 pub use change::Moduli;
 pub use checkpoint::Checkpoint;
 pub use core::Solver;

@@ -123,7 +123,7 @@ impl Solver {
         if supported.is_empty() {
             return Ok(report);
         }
-        let carries = |s: &ParticleState| supported.contains(&s.object()) && self.laws.substances[s.substance()].can_stand();
+        let carries = |s: &ParticleState| !s.is_rigid() && supported.contains(&s.object()) && self.laws.substances[s.substance()].can_stand();
         if !states.iter().any(carries) {
             // Heaps stand where they are, and carry nothing.
             self.replace(states);

@@ -161,7 +161,7 @@ impl Substance {
             Substance::Rigid { friction, restitution } => (RIGID, 0, [*friction, *restitution, 0.0]),
         };
         let [a, b, c] = values;
-        SubstanceRecord { kind, model, shown: self.shown_stretch().unwrap_or_default(), values: [a, b, c, 0.0, 0.0, 0.0] }
+        SubstanceRecord { kind, model, shown: self.shown_stretch().unwrap_or_default(), values: [a, b, c, f32::MAX, 0.0, 0.0] }
     }
 
     /// Bounds of the stretch that is shown of what does not remember its shape; none where F is shown.
@@ -314,4 +314,12 @@ pub fn liquid_bulk_pa(depth_m: f32, speed_m_s: f32, gravity_m_s2: f32, density_k
 /// The rows that the particles' tags name.
 pub(super) fn records(substances: &[Substance]) -> Vec<SubstanceRecord> {
     substances.iter().map(Substance::record).collect()
+}
+
+impl SubstanceRecord {
+    /// The same where packing stiffens by no more than so many times.
+    pub fn stiffened_to(mut self, most: f32) -> SubstanceRecord {
+        self.values[3] = most;
+        self
+    }
 }

@@ -166,6 +166,8 @@ pub struct Settings {
     pub frame_s: f64,
     /// Of the dither.
     pub seed: u64,
+    /// Substeps that a fiftieth of a second, or a shorter frame, may take for the sake of stiffness.
+    pub substeps_most: u32,
     /// Share of the acoustic limit that a substep takes: dt <= cfl cell / (c + |v|).
     pub cfl: f32,
 }
@@ -185,6 +187,7 @@ impl Settings {
             glued: false,
             frame_s: 0.02,
             seed: 1,
+            substeps_most: 4000,
             cfl: 0.4,
         }
     }
@@ -212,9 +215,11 @@ pub enum Taut {
     Stiffness,
     /// Surface tension, newtons a metre.
     SurfaceTension,
+    /// How many times as stiff what is packed becomes.
+    Hardening,
 }
 
-/// An object that could only be kept stable with a smaller modulus or surface tension.
+/// An object that could only be kept stable with a smaller modulus, surface tension or hardening.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Softened {
     /// Index of the object.
@@ -246,6 +251,8 @@ pub struct Advance {
     pub retries: u32,
     /// Objects that were softened.
     pub softened: Vec<Softened>,
+    /// The speed at which something was held, the fastest that substeps follow; 0 where nothing was.
+    pub held_m_s: f32,
     /// Fields that gave no number, and how often, counted by particle and substep. It counted as zero.
     pub undefined: Vec<(String, u64)>,
     /// How often a field would have brought a particle beyond 200 m/s, where it was held.
@@ -301,6 +308,17 @@ pub enum SolverError {
         count: u64,
         /// How many there may be.
         allowed: u64,
+    },
+    /// The lattice has no node there.
+    #[error(
+        "something is more than {allowed_m:.1e} m from the origin, where places are too coarse for cells of {cell_m:.1e} m; place it nearer, or use a \
+         smaller solver.cells_across"
+    )]
+    TooFar {
+        /// Cell size.
+        cell_m: f32,
+        /// How far it may be.
+        allowed_m: f32,
     },
     /// More substeps than anyone waits for.
     #[error(

@@ -105,6 +105,17 @@ const STEP_CELLS: f32 = 0.6;
 const WAVE_CELLS: f32 = 0.75;
 
 impl Watch {
+    /// What of a failed segment may guide the next try: a speed that is none, or beyond all that is followed, is held.
+    pub fn sane(self, speed_most_m_s: f32) -> Watch {
+        Watch { peak_speed_m_s: if self.peak_speed_m_s.is_nan() { speed_most_m_s } else { self.peak_speed_m_s.min(speed_most_m_s) }, ..self }
+    }
+
+    /// Whether a segment that is still running has failed already; what is measured at its end is not known yet.
+    pub fn went_wrong(&self, dt_s: f32, sort_every: u32, cell_m: f32, travel_m: f32) -> bool {
+        let unmeasured = Watch { nonfinite: 0, wave_speed_m_s: 0.0, j_low: 1.0, j_high: 1.0, ..*self };
+        unmeasured.trip(dt_s, sort_every, cell_m, travel_m).is_some()
+    }
+
     /// Why the segment has to be run again, if it has to. `travel_m` is how far a particle may go
     /// between two sorts.
     pub fn trip(&self, dt_s: f32, sort_every: u32, cell_m: f32, travel_m: f32) -> Option<String> {

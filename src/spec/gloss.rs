@@ -26,6 +26,7 @@ const SCALES: &[Scale] = &[
     Scale { key: "duration_s", as_much: "long", more: "longer", less: "shorter" },
     Scale { key: "fps", as_much: "many frames", more: "more frames", less: "fewer frames" },
     Scale { key: "cells_across", as_much: "fine", more: "finer", less: "coarser" },
+    Scale { key: "substeps_most", as_much: "patient", more: "more patient", less: "less patient" },
     Scale { key: "metres_per_unit", as_much: "big", more: "bigger", less: "smaller" },
     Scale { key: "friction", as_much: "rough", more: "rougher", less: "smoother" },
     Scale { key: "restitution", as_much: "bouncy", more: "bouncier", less: "less bouncy" },

@@ -80,6 +80,8 @@ pub const IDS: u32 = 100_000;
 pub const CELLS_ACROSS: (u32, u32) = (4, 1024);
 /// Particles that a Gaussian follows.
 pub const NEIGHBOURS: u32 = 16;
+/// Substeps of a frame for the sake of stiffness.
+pub const SUBSTEPS: (u32, u32) = (20, 100_000);
 /// Vertical field of view.
 pub const FOV_DEG: (f64, f64) = (1.0, 170.0);
 /// Rate of a camera's orbit.

@@ -250,7 +250,7 @@ fn spec() -> impl Strategy<Value = Spec> {
         1..=1000_u32,
         vector(1e3),
         ground,
-        auto(4..=1024_u32),
+        (auto(4..=1024_u32), limits::SUBSTEPS.0..=limits::SUBSTEPS.1),
         1..=16_u32,
         auto(prop::array::uniform2(16..=8192_u32)),
     );
@@ -258,7 +258,7 @@ fn spec() -> impl Strategy<Value = Spec> {
     let objects = (object("vase".to_owned()), prop::option::of(object("pot-2".to_owned())));
     let expectations = prop::sample::subsequence(vec!["vase.apex_m > 0.3", "vase.com_m.z.max <= 1e-3", "vase.settle_s<2"], 0..=3);
     (scene, globals, objects, entries(), camera, expectations).prop_map(|(scene, globals, objects, entries, camera, expectations)| {
-        let (seed, duration_s, fps, gravity_m_s2, ground, cells_across, neighbours, size) = globals;
+        let (seed, duration_s, fps, gravity_m_s2, ground, (cells_across, substeps_most), neighbours, size) = globals;
         let (file, up, metres_per_unit, blake3) = scene;
         Spec {
             format: 1,
@@ -266,7 +266,7 @@ fn spec() -> impl Strategy<Value = Spec> {
             scene: Scene { file, blake3, up, metres_per_unit },
             time: Time { duration_s, fps },
             world: World { gravity_m_s2, ground },
-            solver: Solver { cells_across },
+            solver: Solver { cells_across, substeps_most },
             objects: std::iter::once(objects.0).chain(objects.1).collect(),
             pins: entries.0,
             colliders: entries.1,

@@ -66,7 +66,9 @@ impl From<SolverError> for EngineError {
     fn from(error: SolverError) -> Self {
         match error {
             SolverError::Gpu(gpu) => EngineError::Gpu(gpu),
-            large @ (SolverError::TooWide { .. } | SolverError::TooFast { .. }) => EngineError::TooLarge(large.to_string()),
+            large @ (SolverError::TooWide { .. } | SolverError::TooFar { .. } | SolverError::TooFast { .. }) => {
+                EngineError::TooLarge(large.to_string())
+            }
             other => EngineError::Unstable(other.to_string()),
         }
     }

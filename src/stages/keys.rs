@@ -58,10 +58,10 @@ fn device(gpu: &Gpu) -> serde_json::Value {
 pub(super) fn prestress(spec: &Spec, keys: &StillKeys, resolved: &Resolved, gpu: &Gpu) -> String {
     let bodies: Vec<_> = spec.objects.iter().map(|o| (&o.material, &o.parts, o.rest)).collect();
     let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s <= 0.0).map(|p| (&p.object, &p.region)).collect();
-    hash(
-        "prestress",
-        &json!([solver::VERSION, *SOLVER_TEXT, device(gpu), keys.proxy, resolved.cell_m, resolved.ground_m, spec.time.fps, bodies, pins]),
-    ) + &hash("support", &json!([spec.world, spec.colliders]))
+    // What is too stiff for the shortest substep is softened before.
+    let shortest_s = solver::shortest_substep_s(1.0 / f64::from(spec.time.fps), spec.solver.substeps_most);
+    hash("prestress", &json!([solver::VERSION, *SOLVER_TEXT, device(gpu), keys.proxy, resolved.cell_m, shortest_s, resolved.ground_m, bodies, pins]))
+        + &hash("support", &json!([spec.world, spec.colliders]))
 }
 
 /// What motion until `to_s` depends on, and nothing that the spec says of later times.

@@ -59,6 +59,9 @@ pub struct SolverMetrics {
     pub undefined: BTreeMap<String, u64>,
     /// How often a force would have brought a particle beyond 200 m/s, where it was held.
     pub limited: u64,
+    /// The speed at which something was held, the fastest that substeps follow; 0 where nothing was.
+    #[serde(default)]
+    pub held_m_s: f64,
     /// Wall seconds of the simulation.
     pub simulate_s: f64,
 }

@@ -68,6 +68,9 @@ pub(super) struct SolverTotals {
     /// How often each force gave no number, by name.
     #[serde(default)]
     pub undefined: BTreeMap<String, u64>,
+    /// The speed at which something was held, the fastest that substeps follow; 0 where nothing was.
+    #[serde(default)]
+    pub held_m_s: f64,
     /// How often a force was held at the speed that forces end at.
     #[serde(default)]
     pub limited: u64,
@@ -89,6 +92,7 @@ impl SolverTotals {
         self.nonfinite = later.nonfinite.max(self.nonfinite);
         self.seconds += later.seconds;
         self.limited += later.limited;
+        self.held_m_s = self.held_m_s.max(later.held_m_s);
         self.fired.extend_from_slice(&later.fired);
         for (name, times) in &later.undefined {
             *self.undefined.entry(name.clone()).or_default() += times;

@@ -28,6 +28,7 @@ pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
                 let (unit, what) = match s.what {
                     Taut::Stiffness => ("Pa", "stiffness"),
                     Taut::SurfaceTension => ("N/m", "surface tension"),
+                    Taut::Hardening => ("times its stiffness where it is packed", "hardening"),
                 };
                 let (name, value, from_s) = (name(s.object), s.value, s.time_s);
                 format!("{name}: simulated with at most {value:.2e} {unit} from {from_s:.3} s on, {:.2e} of its {what}: {}", s.factor, s.reason)
@@ -35,6 +36,7 @@ pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
             .collect(),
         undefined: advance.undefined.iter().cloned().collect(),
         limited: advance.limited,
+        held_m_s: f64::from(advance.held_m_s),
         ..SolverTotals::default()
     }
 }
@@ -46,7 +48,14 @@ pub(super) fn of_forces(totals: &SolverTotals) -> Vec<String> {
     });
     let limited = (totals.limited > 0)
         .then(|| format!("forces would have brought particles beyond {} m/s {} times: they were held there", limits::SPEED_M_S, totals.limited));
-    undefined.chain(limited).collect()
+    let held = (totals.held_m_s > 0.0).then(|| {
+        format!(
+            "something would have been faster than {:.3e} m/s, the most that the substeps of a frame follow, and was held there: use a higher time.fps or \
+             solver.substeps_most, or a smaller solver.cells_across",
+            totals.held_m_s
+        )
+    });
+    undefined.chain(limited).chain(held).collect()
 }
 
 /// When what waited for an impact came about, in words.
@@ -105,6 +114,7 @@ pub(super) fn metrics(
             softened: totals.softened.clone(),
             undefined: totals.undefined.clone(),
             limited: totals.limited,
+            held_m_s: totals.held_m_s,
             simulate_s: totals.seconds,
         },
         resolved: resolved(spec, ready, matter),

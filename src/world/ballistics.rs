@@ -2,7 +2,7 @@
 //! anything is simulated. Predicted from the spec, never read from a result.
 
 use super::ObjectFacts;
-use super::prepared::support_below;
+use super::prepared::{NEAR_M, support_below};
 use super::spread;
 use crate::solver::velocity_change;
 use crate::spec::expression::{Inputs, Program};
@@ -140,7 +140,7 @@ impl Ground<'_> {
     fn floor(&self, at: DVec3) -> f64 {
         let [x, y, _] = self.facts.centre_m;
         let low = self.facts.low_m[2];
-        support_below(&self.spec.colliders, self.ground_m, x + at.x, y + at.y, low + at.z) - low
+        support_below(&self.spec.colliders, self.ground_m, [x + at.x, y + at.y, low + at.z], NEAR_M) - low
     }
 }
 

@@ -3,6 +3,7 @@
 use super::Prepared;
 use super::measure::Bodies;
 use super::occupied::occupied_m3;
+use super::prepared::NEAR_M;
 use super::region::{self, bounds};
 use super::stuff::{Stuff, Yardstick};
 use crate::proxy::{self, Solid, YoungAuto};
@@ -57,6 +58,8 @@ pub fn matter(spec: &Spec, prepared: &Prepared, solids: &[Solid]) -> Matter {
             found: Vec::new(),
             colliders: spec.colliders.clone(),
             ground_m: prepared.ground_m,
+            // No more than a cell of what is small.
+            near_m: solids.iter().map(|s| 2.0 * f64::from(s.spacing_m)).fold(NEAR_M, f64::min),
         },
         piece: Vec::new(),
         stuffs: Vec::new(),

@@ -1,7 +1,8 @@
 //! The automatic camera: behind the object and to its right, a little above, as near as it holds the predicted path.
 
 use super::ballistics::{self, Path};
-use super::{ObjectFacts, Prepared, support_below};
+use super::prepared::{NEAR_M, support_below};
+use super::{ObjectFacts, Prepared};
 use crate::spec::{Auto, Camera, Spec};
 use glam::{DVec2, DVec3};
 
@@ -128,7 +129,7 @@ fn rim(spec: &Spec, prepared: &Prepared, object: &ObjectFacts, shift: DVec3, rad
     (0..8).map(move |k| {
         let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
         let (x, y) = (middle.x + radius_m * cos, middle.y + radius_m * sin);
-        DVec3::new(x, y, support_below(&spec.colliders, prepared.ground_m, x, y, low_m))
+        DVec3::new(x, y, support_below(&spec.colliders, prepared.ground_m, [x, y, low_m], NEAR_M))
     })
 }
 

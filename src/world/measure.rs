@@ -67,6 +67,8 @@ pub struct Bodies {
     pub colliders: Vec<Collider>,
     /// Height of the ground.
     pub ground_m: f64,
+    /// What reaches no higher than this over a point counts as below it.
+    pub near_m: f64,
 }
 
 /// One object at one frame. Definitions as in [`crate::stages::ObjectMetrics`].
@@ -143,7 +145,7 @@ fn spin(inertia: DMat3, angular: DVec3) -> DVec3 {
 
 fn gap_below(point: &Vec3, bodies: &Bodies) -> f64 {
     let p = point.as_dvec3();
-    p.z - support_below(&bodies.colliders, bodies.ground_m, p.x, p.y, p.z)
+    p.z - support_below(&bodies.colliders, bodies.ground_m, p.to_array(), bodies.near_m)
 }
 
 /// The value below which a share of all values lies; reorders them.
@@ -181,6 +183,7 @@ mod tests {
             found: vec![1.0],
             colliders: vec![],
             ground_m: 0.0,
+            near_m: 0.01,
         };
         (points, bodies)
     }

@@ -61,7 +61,12 @@ impl Prepared {
                     low_m: low.as_dvec3().to_array(),
                     high_m: high.as_dvec3().to_array(),
                     centre_m: centre.to_array(),
-                    support_m: support_below(&spec.colliders, self.ground_m, centre.x, centre.y, f64::from(low.z)),
+                    support_m: support_below(
+                        &spec.colliders,
+                        self.ground_m,
+                        [centre.x, centre.y, f64::from(low.z)],
+                        NEAR_M.min(f64::from(high.z - low.z)),
+                    ),
                     forward: object.forward,
                 }
             })
@@ -69,10 +74,12 @@ impl Prepared {
     }
 }
 
-/// Height of what is below a point: the ground, or the highest collider top that is not above it by
-/// more than a hundredth of a metre.
-pub fn support_below(colliders: &[Collider], ground_m: f64, x: f64, y: f64, z: f64) -> f64 {
-    colliders.iter().filter_map(|c| top_at(&c.shape, x, y)).filter(|top| *top <= z + 0.01).fold(ground_m, f64::max)
+/// What is so little higher than a thing of usual size still counts as below it, metres.
+pub const NEAR_M: f64 = 0.01;
+
+/// Height of what is below a point: the ground, or the highest collider top that is not above it by more than `near_m`.
+pub fn support_below(colliders: &[Collider], ground_m: f64, [x, y, z]: [f64; 3], near_m: f64) -> f64 {
+    colliders.iter().filter_map(|c| top_at(&c.shape, x, y)).filter(|top| *top <= z + near_m).fold(ground_m, f64::max)
 }
 
 /// Height of a shape's upper side over one point of the plan, where it has one there.

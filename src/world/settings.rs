@@ -31,6 +31,7 @@ pub fn settings(spec: &Spec, matter: &Matter, resolved: &Resolved) -> Settings {
         fields: spec.forces.iter().filter_map(|f| field(f, spec, matter, object(&f.object)?)).collect(),
         frame_s: 1.0 / f64::from(spec.time.fps),
         seed: spec.seed,
+        substeps_most: spec.solver.substeps_most,
         ..Settings::new(resolved.cell_m as f32)
     }
 }

@@ -6,6 +6,8 @@ use glam::DVec3;
 
 /// Compression under its own weight that a flowing thing's automatic stiffness allows.
 const FLOWING_STRAIN: f64 = 0.01;
+/// Compression by its own surface tension that a drop's automatic bulk modulus allows.
+const DROP_STRAIN: f64 = 0.01;
 /// Softest and stiffest automatic value of a thing that flows, Pa: stiffer ones only cost steps.
 const FLOWING_PA: (f64, f64) = (1e4, 1e6);
 /// Compression under its own weight that what froze out of a liquid has.
@@ -44,9 +46,11 @@ impl Yardstick {
         if material.stands() {
             return self.standing_pa * density / self.density_kg_m3;
         }
-        if let Material::Liquid(_) = material {
+        if let Material::Liquid(liquid) = material {
             let (height_m, gravity_m_s2) = (self.height_m as f32, STANDARD_M_S2 as f32);
-            return f64::from(liquid_bulk_pa(height_m, 0.0, gravity_m_s2, density as f32));
+            // A drop of this height holds 4 sigma / height inside, which is to compress it by no more than depth would.
+            let tension_pa = 4.0 * liquid.surface_tension_n_m / self.height_m.max(f64::MIN_POSITIVE);
+            return f64::from(liquid_bulk_pa(height_m, 0.0, gravity_m_s2, density as f32)).max(tension_pa / DROP_STRAIN);
         }
         // Bulk modulus from depth: K = rho g h / strain, E = 3 K (1 - 2 nu).
         let bulk_pa = density * STANDARD_M_S2 * self.height_m / FLOWING_STRAIN;
@@ -134,7 +138,7 @@ fn activation(activation: &spec::Activation) -> Activation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::{Elastic, Sand};
+    use crate::spec::{Elastic, Liquid, Sand};
 
     #[test]
     fn heavier_parts_are_stiffer_and_deeper_heaps_too() {
@@ -142,6 +146,10 @@ mod tests {
         let heavy = Material::Elastic(Elastic { density_kg_m3: 3000.0, ..Elastic::default() });
         assert_eq!(yard(1.0).young_pa(&heavy), 6e5);
         let sand = Material::Sand(Sand { young_pa: Auto::Auto, ..Sand::default() });
+        // A raindrop is held by its skin: 4 x 0.072 N/m / 2 mm / 0.01.
+        let water = Material::Liquid(Liquid { surface_tension_n_m: 0.072, ..Liquid::default() });
+        assert!((yard(2e-3).young_pa(&water) - 14_400.0).abs() < 1.0);
+        assert!((yard(0.5).young_pa(&water) - 100.0 * 1000.0 * 2.0 * 9.81 * 0.5).abs() < 200.0);
         // 1600 kg/m3 x 9.81 m/s2 x 0.25 m / 0.01 = 392 kPa of bulk modulus, x 3 (1 - 0.6).
         assert!((yard(0.25).young_pa(&sand) - 1.2 * 392_400.0).abs() < 1.0);
         assert_eq!(yard(10.0).young_pa(&sand), 1e6);

@@ -20,6 +20,7 @@ pub struct World<'a> {
     pub gravity_m_s2: Vec3,
     pub accelerations: &'a [Vec3],
     pub dt_s: f32,
+    pub speed_most_m_s: f32,
 }
 
 fn xyz(v: &[f32; 4]) -> Vec3 {
@@ -382,6 +383,9 @@ impl World<'_> {
         }
         let v = xyz(&body.velocity_m_s) + given.0 / shape.mass_kg() + (self.gravity_m_s2 + self.accelerations[shape.object as usize]) * self.dt_s;
         let kept = xyz(&body.angular_momentum) + given.1;
+        let rim = shape.radius_m * spin_of(shape, q, kept).length();
+        let followed = (self.speed_most_m_s / (v.length() + rim).max(1e-30)).min(1.0);
+        let (v, kept) = (v * followed, kept * followed);
         let r = Mat3::from_quat(q);
         Moving {
             v,

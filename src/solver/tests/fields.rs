@@ -7,6 +7,7 @@ use crate::solver::advance::Substep;
 use crate::solver::constants;
 use crate::solver::core::Params;
 use crate::solver::fields::{own_number, shapes, velocity_change, write};
+use crate::solver::grid::params_buffer;
 use crate::solver::types::{Field, ObjectForce};
 use crate::solver::validate::block;
 use crate::solver::{Advance, Particles, PinRegion, Settings, Solver};
@@ -96,7 +97,7 @@ fn on_device(programs: &[Program], places: &[Inputs]) -> Vec<[[f32; 4]; 8]> {
         places.iter().flat_map(|p| [single(p.position_m, p.time_s), single(p.velocity_m_s, p.mass_kg), single(p.rest_m, p.seed)]).collect();
     let count = programs.len() * places.len();
     let buffers = [
-        gpu.storage_from("params", &[Params::default()]).expect("a buffer"),
+        params_buffer(&gpu, &Params { speed_most: f32::INFINITY, ..Params::default() }, 0).expect("a buffer"),
         gpu.storage_from("constants", &constants).expect("a buffer"),
         gpu.storage_from("firsts", &firsts).expect("a buffer"),
         gpu.storage_from("places", &packed).expect("a buffer"),

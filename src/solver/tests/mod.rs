@@ -12,6 +12,7 @@ mod motion;
 mod prestress;
 mod shown;
 mod sph;
+mod trouble;
 mod twins;
 mod validation;
 mod volume;

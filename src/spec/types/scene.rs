@@ -108,11 +108,21 @@ impl Default for Ground {
     }
 }
 
-/// Resolution of the solver. Its substep is its own affair.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Resolution of the solver, and what a frame may cost. Its substep is its own affair.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Solver {
     /// Grid cells along the longest side of the objects; `"auto"` follows the quality.
     #[schemars(extend("minimum" = limits::CELLS_ACROSS.0, "maximum" = limits::CELLS_ACROSS.1))]
     pub cells_across: Auto<u32>,
+    /// Substeps that a fiftieth of a second, or a shorter frame, may take for the sake of stiffness, and as many for the sake of speed. What is
+    /// stiffer or faster than they follow is softened or held back, and that is said.
+    #[schemars(range(min = limits::SUBSTEPS.0, max = limits::SUBSTEPS.1))]
+    pub substeps_most: u32,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Solver { cells_across: Auto::Auto, substeps_most: 4000 }
+    }
 }

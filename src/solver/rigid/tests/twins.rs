@@ -44,6 +44,7 @@ fn contacts_impulses_and_places_are_those_of_the_twin() {
         gravity_m_s2: settings.gravity_m_s2,
         accelerations: &[Vec3::ZERO; 2],
         dt_s,
+        speed_most_m_s: f32::INFINITY,
     };
     let substep = Substep { dt_s, dt_next_s: dt_s, index: 80, job: 0, since_s: 0.0, lag: 0 };
     let bound = solver.bind_both().expect("bound");
@@ -159,7 +160,15 @@ fn the_exchange_with_soft_matter_is_that_of_the_twin() {
     let none = [Vec3::ZERO; 2];
     let around = Surroundings { params: solver.params, colliders: &colliders, pins: &[], accelerations: &none, substances: &substances };
     let all = body::assemble(&states, &particles.substances, &colliders, settings.cell_m).expect("bodies").expect("some");
-    let world = World { all: &all, substances: &particles.substances, colliders: &colliders, gravity_m_s2: Vec3::ZERO, accelerations: &none, dt_s };
+    let world = World {
+        all: &all,
+        substances: &particles.substances,
+        colliders: &colliders,
+        gravity_m_s2: Vec3::ZERO,
+        accelerations: &none,
+        dt_s,
+        speed_most_m_s: f32::INFINITY,
+    };
     solver_twin::stress(&mut states, &around, dt_s);
     let mut grid = solver_twin::p2g(&states, &around);
     let want = world.exchange(&bodies, &states, &mut grid, &solver.params);
