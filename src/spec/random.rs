@@ -1,13 +1,13 @@
 //! Random specs from the whole schema: what nobody would write, and the solver has to survive.
 //!
 //! A value is drawn for whatever the schema allows, so that a field that is added is drawn too. What
-//! only makes sense together (names, the scene, the length of a run) is set afterwards.
+//! only makes sense together (names, the scene, the length of a run) is set afterwards ([`sense`]).
 
-use super::{Force, Spec, SpecError, schema};
-use serde_json::{Map, Value, json};
+mod sense;
 
-/// Longest run, in frames.
-const FRAMES_MOST: u64 = 3;
+use super::{Spec, SpecError, schema};
+use serde_json::{Value, json};
+
 /// Expressions to draw from, the unkind ones among them.
 const EXPRESSIONS: [&str; 6] = [
     "vec3(6.0 * sin(3.0 * t), 0, 0)",
@@ -20,8 +20,17 @@ const EXPRESSIONS: [&str; 6] = [
 
 /// What was drawn and does not go together is taken out, so many times.
 const REPAIRS: u32 = 32;
-/// Effects of an event, of which it has one.
-const EVENTS: [&str; 6] = ["push_m_s", "velocity_m_s", "material", "weaken", "freeze", "release"];
+/// Share of the properties that need not be there and are.
+const GIVEN: f64 = 0.6;
+
+/// How much a spec may ask of a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// A blink on a software adapter: frames and substeps are few.
+    Small,
+    /// What a GPU does in a blink.
+    Whole,
+}
 
 /// SplitMix64 (Steele, Lea and Flood 2014): equal seeds, equal specs, everywhere.
 #[derive(Clone, Debug)]
@@ -69,10 +78,10 @@ impl Random {
 }
 
 /// A spec drawn from the schema for a scene file; the error where what was drawn does not go together.
-pub fn spec(seed: u64, scene_file: &str) -> Result<Spec, SpecError> {
+pub fn spec(seed: u64, scene_file: &str, size: Size) -> Result<Spec, SpecError> {
     let mut random = Random(seed);
     let mut value = draw(schema::spec(), None, &mut random).unwrap_or_default();
-    make_sense(&mut value, scene_file, seed, &mut random);
+    sense::make(&mut value, scene_file, seed, size, &mut random);
     let mut result = Spec::from_value(value.clone());
     for _ in 0..REPAIRS {
         match &result {
@@ -140,13 +149,13 @@ fn draw(schema: &Value, around: Option<&Value>, random: &mut Random) -> Option<V
     }
 }
 
-/// Adds the properties that a schema names: those it requires, and half of the others.
+/// Adds the properties that a schema names: those it requires, and most of the others.
 fn with_properties(schema: &Value, mut value: Value, random: &mut Random) -> Value {
     let (Some(properties), Some(table)) = (schema.get("properties").and_then(Value::as_object), value.as_object_mut()) else { return value };
     let required = schema.get("required").and_then(Value::as_array);
     for (name, property) in properties {
         let needed = required.is_some_and(|r| r.iter().any(|n| n == name));
-        if needed || random.chance(0.5) {
+        if needed || random.chance(GIVEN) {
             table.extend(draw(property, None, random).map(|v| (name.clone(), v)));
         }
     }
@@ -174,122 +183,5 @@ fn array(schema: &Value, random: &mut Random) -> Option<Value> {
     }
 }
 
-/// Names that refer to each other, a scene that is there, a run of a few frames on a small grid.
-fn make_sense(value: &mut Value, scene_file: &str, seed: u64, random: &mut Random) {
-    let Some(spec) = value.as_object_mut() else { return };
-    spec.insert("format".to_owned(), json!(1));
-    spec.insert("seed".to_owned(), json!(seed % 1000));
-    // A scene of 1 mm, 1 m or 100 m.
-    let metres_per_unit = [1e-3, 1.0, 1.0, 1.0, 100.0][random.below(5)];
-    spec.insert("scene".to_owned(), json!({ "file": scene_file, "up": "+z", "metres_per_unit": metres_per_unit }));
-    let fps = [24, 50, 50, 120, 1000][random.below(5)];
-    spec.insert("time".to_owned(), json!({ "fps": fps, "duration_s": random.below(FRAMES_MOST as usize + 1) as f64 / f64::from(fps) }));
-    spec.insert("solver".to_owned(), json!({ "cells_across": 4 + random.below(3) }));
-    for key in ["camera", "output", "skin", "expect", "look"] {
-        spec.remove(key);
-    }
-    let end_s = FRAMES_MOST as f64 / f64::from(fps);
-    let objects = names(spec, "object", "thing", 1 + random.below(2));
-    for (list, stem) in [("pin", "pin"), ("collider", "wall"), ("force", "force"), ("event", "event")] {
-        names(spec, list, stem, 3);
-        for item in entries(spec, list) {
-            if item.contains_key("object") {
-                item.insert("object".to_owned(), json!(objects[random.below(objects.len().max(1))]));
-            }
-            for time in ["at_s", "from_s", "to_s"] {
-                if item.get(time).is_some_and(Value::is_number) {
-                    let share = 0.5 * random.share() + if time == "to_s" { 0.5 } else { 0.0 };
-                    item.insert(time.to_owned(), json!(end_s * share));
-                }
-            }
-            one_way(item, list, random);
-            if item.contains_key("path") {
-                item.insert("path".to_owned(), json!([[0.0, 0.0, 0.0, 0.0], [end_s, 0.1 * metres_per_unit, 0.0, 0.0]]));
-            }
-            if item.contains_key("when") {
-                item.remove("at_s");
-            }
-            item.remove("part");
-        }
-    }
-    // Near enough to each other, and to the ground, to meet.
-    for item in entries(spec, "object") {
-        item.insert("select".to_owned(), json!("all"));
-        let near = |random: &mut Random| json!(std::array::from_fn::<f64, 3, _>(|_| (random.share() - 0.4) * metres_per_unit));
-        if random.chance(0.8) {
-            item.insert("offset_m".to_owned(), near(random));
-        }
-        if let Some(parts) = item.get_mut("part").and_then(Value::as_array_mut) {
-            for (number, part) in parts.iter_mut().filter_map(Value::as_object_mut).enumerate() {
-                part.insert("name".to_owned(), json!(format!("part{number}")));
-            }
-        }
-    }
-    split_scene(spec, metres_per_unit);
-}
-
-/// Of the ways that exclude each other in a force or an event, one; a plain one where none was drawn.
-fn one_way(item: &mut Map<String, Value>, list: &str, random: &mut Random) {
-    let (ways, plain): (&[&str], _) = match list {
-        "force" => (Force::WAYS, "acceleration_m_s2"),
-        "event" => (&EVENTS, "push_m_s"),
-        _ => return,
-    };
-    let drawn: Vec<&str> = ways.iter().copied().filter(|w| item.get(*w).is_some_and(|v| *v != json!(false))).collect();
-    let kept = if drawn.is_empty() { plain } else { drawn[random.below(drawn.len())] };
-    ways.iter().filter(|w| **w != kept).for_each(|w| drop(item.remove(*w)));
-    item.entry(kept).or_insert(json!([0.5, 0.0, 2.0]));
-}
-
-/// The entries of a list that are tables.
-fn entries<'a>(spec: &'a mut Map<String, Value>, list: &str) -> impl Iterator<Item = &'a mut Map<String, Value>> {
-    spec.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
-}
-
-/// Shortens a list, and numbers the names in it.
-fn names(spec: &mut Map<String, Value>, list: &str, stem: &str, most: usize) -> Vec<String> {
-    if let Some(items) = spec.get_mut(list).and_then(Value::as_array_mut) {
-        items.truncate(most);
-    }
-    let mut given = Vec::new();
-    for (number, item) in entries(spec, list).enumerate() {
-        let name = format!("{stem}{number}");
-        item.insert("name".to_owned(), json!(name));
-        given.push(name);
-    }
-    given
-}
-
-/// Two objects take the halves of the scene, on either side of x = 0.
-fn split_scene(spec: &mut Map<String, Value>, metres_per_unit: f64) {
-    let count = spec.get("object").and_then(Value::as_array).map_or(0, Vec::len);
-    if count < 2 {
-        return;
-    }
-    for (number, item) in entries(spec, "object").enumerate() {
-        let x = if number == 0 { -1.0 } else { 1.0 } * metres_per_unit;
-        let size = [2.0 * metres_per_unit, 4.0 * metres_per_unit, 4.0 * metres_per_unit];
-        item.insert("select".to_owned(), json!({ "box": { "centre_m": [x, 0.0, 0.0], "size_m": size } }));
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_drawn_is_mostly_a_spec_and_always_the_same() {
-        let drawn: Vec<_> = (0..300).map(|seed| spec(seed, "block.ply")).collect();
-        let good: Vec<&Spec> = drawn.iter().flatten().collect();
-        assert!(
-            good.len() > 200,
-            "{} of 300; {:?}",
-            good.len(),
-            drawn.iter().filter_map(|d| d.as_ref().err()).map(ToString::to_string).take(5).collect::<Vec<_>>()
-        );
-        assert_eq!(spec(7, "block.ply").map(|s| s.hash()).ok(), spec(7, "block.ply").map(|s| s.hash()).ok());
-        // Every list is drawn, and every material that there is.
-        assert!(good.iter().any(|s| !s.pins.is_empty()) && good.iter().any(|s| !s.forces.is_empty()) && good.iter().any(|s| !s.events.is_empty()));
-        assert!(good.iter().any(|s| s.objects.len() == 2) && good.iter().any(|s| !s.colliders.is_empty()));
-    }
-}
+mod tests;

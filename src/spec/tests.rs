@@ -445,3 +445,35 @@ fn the_schemas_hold_the_ranges() {
     let ops: Vec<&Value> = schema::edit()["$defs"]["Edit"]["oneOf"].as_array().unwrap().iter().map(|op| &op["properties"]["op"]["const"]).collect();
     assert_eq!(ops, [&json!("set"), &json!("add"), &json!("remove")]);
 }
+
+/// What is far too much is refused before it is read, and in words; what nests without end does not end the program.
+#[test]
+fn texts_without_end_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("long.toml");
+    std::fs::write(&file, format!("{OUTLINE}\n# {}", "x".repeat(10 << 20))).unwrap();
+    assert!(Spec::read(&file).unwrap_err().to_string().contains("too many for a spec"));
+    let force = |expression: &str| refused("acceleration_m_s2 = [6, 0, 0]", &format!("acceleration_m_s2 = \"{expression}\"")).to_string();
+    let long = force(&format!("{}x", "x + ".repeat(10 << 18)));
+    assert!(long.contains("bytes") && long.len() < 1000, "{} characters", long.len());
+    // There are no names of one's own, so nothing can call itself.
+    assert!(force("f(x)").contains('f'));
+    for nested in ["[".repeat(100_000), "{a=".repeat(100_000), "a.".repeat(100_000)] {
+        let error = Spec::from_toml(&format!("format = 1\nscene = {nested}")).unwrap_err().to_string();
+        assert!(error.len() < 2000, "{} characters", error.len());
+    }
+}
+
+/// Nothing may speak of an object that is not there: neither a spec nor an edit that takes the object away.
+#[test]
+fn an_event_on_an_object_that_is_gone_is_refused_by_name() {
+    let event = OUTLINE.lines().find(|line| line.starts_with("push_m_s")).unwrap();
+    let gone = refused(event, &format!("{event}\n[[event]]\nname = \"late\"\nat_s = 0.5\nobject = \"pot\"\npush_m_s = [1, 0, 0]"));
+    assert!(gone.path.starts_with("event.late") && gone.to_string().contains("pot"), "{gone}");
+    let mut two = outline();
+    two.objects.push(crate::spec::Object::new("pot"));
+    two.events.push(crate::spec::Event { push_m_s: Some([1.0, 0.0, 0.0]), ..crate::spec::Event::at("late", "pot", 0.5) });
+    two.validate().unwrap();
+    two.objects.pop();
+    assert!(two.validate().unwrap_err().to_string().contains("pot"));
+}

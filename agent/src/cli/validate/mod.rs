@@ -11,6 +11,7 @@ use clap::Args;
 use phystalk::gpu::Gpu;
 use phystalk::skin;
 use phystalk::solver::validate::{self, Case, Check};
+use phystalk::spec::random::Size;
 use phystalk::stages::{EngineError, fuzz};
 use serde_json::json;
 use std::path::PathBuf;
@@ -26,6 +27,9 @@ pub struct Arguments {
     /// How many random specs V28 draws
     #[arg(long, value_name = "N")]
     specs: Option<u64>,
+    /// The seed of the first of them
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    from: u64,
     /// Write a page with plots too; the plots go to media/ beside it
     #[arg(long, value_name = "FILE.md")]
     page: Option<PathBuf>,
@@ -40,8 +44,11 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
             output::note(format!("{} ({} of {}) …", case.name, number + 1, cases.len()));
         }
         let started = Instant::now();
+        let size = if arguments.quick { Size::Small } else { Size::Whole };
         let found = match arguments.specs {
-            Some(specs) if case.name == "V28" => fuzz::checks(&gpu, 0..specs, &mut |outcome| told(outcome, specs, flags)),
+            Some(specs) if case.name == "V28" => {
+                fuzz::checks(&gpu, size, arguments.from..arguments.from + specs, &mut |outcome| told(outcome, flags))
+            }
             _ => case.run(&gpu),
         };
         let found = found.map_err(EngineError::from)?;
@@ -67,14 +74,14 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     }
 }
 
-/// Says what went wrong with a random spec, and now and then how far it is.
-fn told(outcome: &fuzz::Outcome, specs: u64, flags: &Flags) {
-    match &outcome.kind {
-        fuzz::Kind::Held | fuzz::Kind::Refused(_) => {}
-        bad => output::note(format!("  seed {}: {bad:?}", outcome.seed)),
+/// Says what went wrong with a random spec; with `--verbose` what came of each.
+fn told(outcome: &fuzz::Outcome, flags: &Flags) {
+    let fine = matches!(outcome.kind, fuzz::Kind::Held | fuzz::Kind::Refused(_));
+    if flags.verbose || !fine {
+        output::note(format!("  {outcome}"));
     }
     if !flags.quiet && (outcome.seed + 1).is_multiple_of(100) {
-        output::note(format!("  {} of {specs}", outcome.seed + 1));
+        output::note(format!("  to seed {}", outcome.seed));
     }
 }
 
@@ -145,11 +152,11 @@ mod tests {
 
     #[test]
     fn an_unknown_case_is_refused_with_the_known_ones() {
-        let arguments = Arguments { names: vec!["V99".to_owned()], quick: false, specs: None, page: None };
+        let arguments = Arguments { names: vec!["V99".to_owned()], quick: false, specs: None, from: 0, page: None };
         let failure = chosen(&arguments).err().unwrap();
         assert_eq!(failure.kind, Kind::Usage);
         assert!(failure.message.contains("V5"), "{}", failure.message);
-        let both = Arguments { names: vec!["v5".to_owned(), "V1".to_owned()], quick: true, specs: None, page: None };
+        let both = Arguments { names: vec!["v5".to_owned(), "V1".to_owned()], quick: true, specs: None, from: 0, page: None };
         assert_eq!(chosen(&both).unwrap().iter().map(|c| c.name).collect::<Vec<_>>(), ["V1"]);
     }
 }
