@@ -19,6 +19,25 @@
 @group(0) @binding(15) var<storage, read_write> control: Control;
 var<immediate> substep: Substep;
 
+// What the friction of walls leaves of a velocity: rough turbulent flow is braked by f / 8 rho v^2 (Darcy and
+// Weisbach), shared among what is within a cell of the wall, by 2 (1 - s), and the more the thinner the liquid is spread
+// there. By backward Euler, which can but brake. Along a wall without friction any liquid slips.
+fn braked(x: vec3<f32>, v: vec3<f32>, full: f32) -> vec3<f32> {
+    var u = v;
+    for (var c = 0u; c < params.collider_count; c++) {
+        let t = touch(colliders[c], x);
+        let s = max(t.distance_m * params.per_m, 0.0);
+        if (s < 1.0 && colliders[c].surface.x > 0.0) {
+            let normal = surface_normal(colliders[c], t.face, x);
+            let across = normal * dot(u, normal);
+            let sliding = u - across;
+            let rate = WALL_FRICTION * length(sliding) * 2.0 * (1.0 - s) * params.per_m / full;
+            u = across + sliding / (1.0 + substep.dt_s * rate);
+        }
+    }
+    return u;
+}
+
 // Moves what got behind a surface back onto it, behind the ground last; it keeps no inward velocity.
 fn kept_out(x: vec3<f32>, v: vec3<f32>, rest_m: f32) -> array<vec3<f32>, 2> {
     var outside = x;
@@ -48,6 +67,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
         var v = held_back(base[i].xyz + pushed(i, list));
         let position = kinematics[i];
         if (list.liquid) {
+            // The density of liquid alone: walls hide hidden / (1 + hidden).
+            let hidden = density[n + i].w;
+            v = braked(position.xyz, v, clamp(density[i].w - hidden / (1.0 + hidden), 0.3, 1.0));
             let moved = kept_out(position.xyz + substep.dt_s * v, v, min(tag.z, 0.0));
             v = moved[1];
             kinematics[i] = vec4<f32>(moved[0], position.w);

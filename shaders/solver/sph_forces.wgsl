@@ -15,14 +15,16 @@
 @group(0) @binding(10) var<storage, read> density: array<vec4<f32>>;
 @group(0) @binding(11) var<storage, read> pressure: array<f32>;
 @group(0) @binding(12) var<storage, read> motion: array<vec4<f32>>;
-@group(0) @binding(13) var<storage, read_write> predicted: array<vec4<f32>>;
-@group(0) @binding(14) var<storage, read_write> corrected: array<vec4<f32>>;
+@group(0) @binding(13) var<storage, read> skin: array<vec2<f32>>;
+@group(0) @binding(14) var<storage, read_write> predicted: array<vec4<f32>>;
+@group(0) @binding(15) var<storage, read_write> corrected: array<vec4<f32>>;
 var<immediate> substep: Substep;
 
 struct Own {
     at: vec4<f32>,
     nature: vec4<f32>,
     v: vec3<f32>,
+    skin: vec2<f32>,
     // 1 where viscosity is explicit.
     viscous: f32,
     liquid: bool,
@@ -33,6 +35,12 @@ struct Pull {
     force: vec3<f32>,
     // What the pressures push.
     push: vec3<f32>,
+}
+
+// Viscosity of a surface of two that pulls: its particles would shake. A share of what a ripple as short as a cell
+// is critically damped by.
+fn calmed(me: Own, its: vec4<f32>) -> f32 {
+    return SKIN_CALM * sqrt((me.nature.y + its.y) * params.cell_m / (me.nature.x + its.x));
 }
 
 fn meet(sums: ptr<function, Pull>, me: Own, j: u32, slope: f32, liquid: bool) {
@@ -47,8 +55,14 @@ fn meet(sums: ptr<function, Pull>, me: Own, j: u32, slope: f32, liquid: bool) {
     let along = y / max(q, 1e-6);
     let approach = dot(me.v - motion[j].xyz, y);
     let viscosity = me.viscous * couple_viscosity(me.nature.z, its.z) + eddies(approach / max(q, 1e-6)) * (2.0 / (me.nature.x + its.x));
-    let tension = couple_tension(me.nature.y, its.y, alike);
-    (*sums).force += (VISCOUS * viscosity * volume * steep * approach / (q * q + SOFT_DISTANCE)) * y - (tension * volume * pull(q)) * along;
+    var braking = viscosity;
+    var tension = WETTING * (me.nature.y + its.y) * volume * pull(q);
+    if (alike) {
+        let other_skin = skin[j];
+        tension = (me.skin.x * other_skin.y + other_skin.x * me.skin.y) * tug(q) / me.at.w;
+        braking += calmed(me, its) * me.skin.y * other_skin.y;
+    }
+    (*sums).force += (VISCOUS * braking * volume * steep * approach / (q * q + SOFT_DISTANCE)) * y - tension * along;
     (*sums).push += (select(0.0, pressure[j], liquid) * slope) * y;
 }
 
@@ -64,7 +78,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let v = motion[i];
-    let me = Own(place[i], nature[i], v.xyz, select(0.0, 1.0, substep.job == 0u), list.liquid);
+    let me = Own(place[i], nature[i], v.xyz, skin[i], select(0.0, 1.0, substep.job == 0u), list.liquid);
     let wall = density[n + i];
     let gradient = density[i].xyz;
     var sums = Pull(vec3<f32>(0.0), pressure[i] * gradient);

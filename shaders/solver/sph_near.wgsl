@@ -23,6 +23,8 @@
 @group(0) @binding(11) var<storage, read_write> answer: array<f32>;
 @group(0) @binding(12) var<storage, read_write> control: Control;
 @group(0) @binding(13) var<storage, read_write> errors: array<atomic<u32>>;
+// Gradient of the density of liquid, times the cell, as if what is solid were liquid too.
+@group(0) @binding(14) var<storage, read_write> inward: array<f32>;
 
 struct Walls {
     // What lies behind two counts once, as if they were perpendicular.
@@ -180,6 +182,7 @@ fn look_around(i: u32) -> f32 {
     }
     var sums = Sums(0.0, vec3<f32>(0.0), 0.0, 0.0);
     add_all(&sums, i, listed.liquids, true, mine, own.z);
+    let of_liquid = sums.gradient;
     add_all(&sums, i, listed.solids, false, mine, own.z);
     var stiffness = 2.0 * sums.viscous;
     var sum = vec4<f32>(0.0);
@@ -190,6 +193,7 @@ fn look_around(i: u32) -> f32 {
         let hidden = min(solid.density, 0.5);
         wall = vec4<f32>(solid.gradient, hidden / (1.0 - hidden));
         stiffness += own.z * solid.drag;
+        inward[i] = length(0.5 * (of_liquid + sums.gradient) + solid.gradient);
     }
     near[i] = pack_near(Near(listed.liquids, listed.solids, liquid));
     density[i] = sum;

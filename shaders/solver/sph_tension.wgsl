@@ -1,18 +1,30 @@
-// Surface tension as a pull between particles: they pull each other when farther apart than PULL_ZERO
-// and push when nearer, so that a liquid holds together and its surface is as small as it can be.
+// Surface tension, as pulls between pairs of particles on the surface, along it: where the surface is bent they
+// have a sum inwards. Pairs inside do not pull, so that tension makes no pressure of its own; and whatever the
+// surface's shape and its particles' distances, momentum is kept pair by pair.
 //
-// Of a pair, sigma V_i V_j pull(q) over cell, in cells. A sharp surface of a liquid without structure
-// then has the tension sigma (Fowler 1937): (pi / 8) int q^4 pull dq = 1.
+// A surface that is stretched evenly by a share e gains 2 sigma A e. Each particle has a part of the area A,
+// by how steeply the density falls beside it, and the pulls of its neighbours on the surface are scaled so that
+// sum r F is 2 sigma times that part.
+
+// How far a particle belongs to the surface, by the gradient of density beside it, times the cell: 1.02 in the
+// outermost layer of a lattice, 0 in the next one.
+fn on_surface(gradient: f32) -> f32 {
+    return smoothstep(SURFACE_FROM, SURFACE_TO, gradient);
+}
+
+// How the pull of a pair goes with its distance.
+fn tug(q: f32) -> f32 {
+    return q * max(1.0 - q, 0.0);
+}
+
+// Solids and walls count as liquid to that gradient, so that a surface meets them at a right angle; what they wet
+// beyond that is a pull on the liquid beside them: nearer than PULL_ZERO they push. Of a pair, sigma V_i V_j pull(q)
+// over cell, in cells; two half-spaces are then held together by 2 sigma a unit of area (Fowler 1937):
+// (pi / 8) int q^4 pull dq = 1.
 
 fn pull(q: f32) -> f32 {
     let rest = max(1.0 - q, 0.0);
     return PULL * rest * rest * (q - PULL_ZERO);
-}
-
-// Tension of a pair. A solid has none of its own and pulls by a share of the liquid's, so that the angle of
-// contact has 1 + cos = 2 WETTING (Young and Dupré).
-fn couple_tension(a: f32, b: f32, liquid: bool) -> f32 {
-    return select(WETTING * (a + b), 0.5 * (a + b), liquid);
 }
 
 // All of a half-space's pull on a particle at a distance: pi int_s^1 pull (q^2 - s^2) dq.

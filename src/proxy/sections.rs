@@ -7,7 +7,7 @@
 //! volume, how far it reaches out, and the sections that carry it.
 
 use super::grid::Grid;
-use super::way::{self, STEP};
+use super::way::{self, Around, STEP};
 use glam::{DVec3, IVec3, Vec3};
 use std::f64::consts::PI;
 
@@ -79,10 +79,12 @@ impl Sections {
         }
         let of = vec![NONE; grid.len()];
         let mut found = Sections { voxel_m: f64::from(grid.voxel_m), of, sections: Vec::new(), layers: vec![0], near: around_nearest_first() };
+        let around = Around::new(grid);
         for (layer, voxels) in layers.iter().rev().enumerate() {
+            let ways = (layers.len() - 1 - layer) as u32 * STEP..(layers.len() - layer) as u32 * STEP;
             for &seed in voxels {
                 if found.of[seed as usize] == NONE {
-                    found.spread(grid, seed, layer, &|voxel| solid[voxel as usize] && layer_of(voxel) == layers.len() - 1 - layer);
+                    found.spread(grid, seed, layer, &around, |voxel| ways.contains(&way[voxel as usize]));
                 }
             }
             found.layers.push(found.sections.len());
@@ -91,15 +93,15 @@ impl Sections {
     }
 
     /// Makes a section of everything in the layer that touches join to a voxel.
-    fn spread(&mut self, grid: &Grid, seed: u32, layer: usize, in_layer: &dyn Fn(u32) -> bool) {
+    fn spread(&mut self, grid: &Grid, seed: u32, layer: usize, around: &Around, in_layer: impl Fn(u32) -> bool) {
         let id = self.sections.len() as u32;
         let (mut voxels, mut beyond) = (vec![seed], Vec::new());
         self.of[seed as usize] = id;
         let mut done = 0;
         while let Some(&voxel) = voxels.get(done) {
             done += 1;
-            for (near, _) in way::around(grid, voxel) {
-                let other = self.of[near as usize];
+            for (near, _) in around.of(voxel) {
+                let Some(&other) = self.of.get(near as usize) else { continue };
                 if other != NONE && other != id && !beyond.contains(&other) {
                     beyond.push(other);
                 } else if other == NONE && in_layer(near) {

@@ -28,6 +28,7 @@ pub(super) fn from_base(grid: &Grid, solid: &[bool]) -> Vec<u32> {
 
 /// Goes on from seeds, nearest first, to everything that is nearer from there (Dial 1969).
 fn spread(grid: &Grid, solid: &[bool], way: &mut [u32], seeds: Vec<u32>) {
+    let around = Around::new(grid);
     seeds.iter().for_each(|&v| way[v as usize] = 0);
     let mut buckets = vec![seeds];
     let mut at = 0;
@@ -36,10 +37,11 @@ fn spread(grid: &Grid, solid: &[bool], way: &mut [u32], seeds: Vec<u32>) {
             if way[voxel as usize] as usize != at {
                 continue;
             }
-            for (near, step) in around(grid, voxel) {
+            for (near, step) in around.of(voxel) {
                 let length = at + step as usize;
-                if solid[near as usize] && way[near as usize] as usize > length {
-                    way[near as usize] = length as u32;
+                let Some(known) = way.get_mut(near as usize) else { continue };
+                if *known as usize > length && solid[near as usize] {
+                    *known = length as u32;
                     buckets.resize_with(buckets.len().max(length + 1), Vec::new);
                     buckets[length].push(near);
                 }
@@ -49,14 +51,21 @@ fn spread(grid: &Grid, solid: &[bool], way: &mut [u32], seeds: Vec<u32>) {
     }
 }
 
-/// The 26 voxels that touch one of the solid, with the steps to them; fewer above the floor.
-pub(super) fn around(grid: &Grid, voxel: u32) -> impl Iterator<Item = (u32, u32)> {
-    let (row, slab) = (grid.size.x as i32, grid.slab() as i32);
-    let floor = (voxel as i32) < slab;
-    (0..27).filter(|&k| k != 13).map(|k| IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)).filter(move |o| !(floor && o.z < 0)).map(move |o| {
-        let near = voxel as i32 + o.x + o.y * row + o.z * slab;
-        (near as u32, STEP - 1 + o.abs().element_sum() as u32)
-    })
+/// The 26 voxels that touch one, as steps of an index and of the way.
+pub(super) struct Around([(u32, u32); 26]);
+
+impl Around {
+    pub fn new(grid: &Grid) -> Around {
+        let (row, slab) = (grid.size.x as i32, grid.slab() as i32);
+        let offset = |k: i32| IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+        let step = |o: IVec3| ((o.x + o.y * row + o.z * slab) as u32, STEP - 1 + o.abs().element_sum() as u32);
+        Around(std::array::from_fn(|k| step(offset(if k < 13 { k as i32 } else { k as i32 + 1 }))))
+    }
+
+    /// The neighbours of a voxel of a solid, with the way to them. Those below the floor have an index out of range.
+    pub fn of(&self, voxel: u32) -> impl Iterator<Item = (u32, u32)> {
+        self.0.iter().map(move |&(step, way)| (voxel.wrapping_add(step), way))
+    }
 }
 
 #[cfg(test)]

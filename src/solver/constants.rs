@@ -96,14 +96,23 @@ pub const VISCOUS_RANGE: f32 = 2400.0;
 pub const EDDIES: f32 = 0.04;
 /// An excess of density is made good no faster than this, 1/s: what overlaps parts without flying off.
 pub const THIN_OUT: f32 = 25.0;
-/// Particles of a liquid with tension push each other off when nearer than this, in cells, and pull when farther
-/// apart. Least energy of pairs then has them about half a cell apart.
+/// Gradient of density, times the cell, from which on a particle counts to a liquid's surface.
+pub const SURFACE_FROM: f32 = 0.25;
+/// And at which it does wholly.
+pub const SURFACE_TO: f32 = 0.6;
+/// Twice the part of the area over volume times that gradient, 2 / 0.51 where the outermost layer has 1.02; by 1.68 more, for
+/// a surface under tension has fewer neighbours than a lattice and does not follow as one: by V21 and V22.
+pub const TENSION: f32 = 1.68 * 3.92;
+/// Levers of a particle's pulls count for at least this: 1.09 on a lattice. What has few neighbours pulls them less.
+pub const LEVERS_LEAST: f32 = 0.3;
+/// Viscosity of a surface under tension, over sqrt(tension density cell).
+pub const SKIN_CALM: f32 = 0.115;
+/// Solids and walls push a liquid with tension off when nearer than this, in cells, and pull when farther apart.
 pub const PULL_ZERO: f32 = 0.44;
-/// Of the pull between them, such that (pi / 8) int q^4 pull dq = 1 over pull = this (1 - q)^2 (q - [`PULL_ZERO`]).
+/// Of that pull, such that (pi / 8) int q^4 pull dq = 1 over pull = this (1 - q)^2 (q - [`PULL_ZERO`]).
 pub const PULL: f32 = 8.0 / (std::f32::consts::PI * (1.0 / 168.0 - PULL_ZERO / 105.0));
-/// Share of a liquid's own pull that solids and walls pull it with: cos of the angle of contact is twice that,
-/// less 1. Water wets most things at about 60 degrees.
-pub const WETTING: f32 = 0.75;
+/// Share of it that they pull by: half the cosine of the angle of contact. Water wets most things at about 60 degrees.
+pub const WETTING: f32 = 0.25;
 
 /// Lame's lambda over mu from which on a solid's changes of volume are evened over each cell: Poisson's ratio 0.41.
 pub const EVEN_FROM: f32 = 4.5;
@@ -311,6 +320,11 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("WALL_VISCOUS", Constant::F32(WALL_VISCOUS)),
         ("VISCOUS_RANGE", Constant::F32(VISCOUS_RANGE)),
         ("THIN_OUT", Constant::F32(THIN_OUT)),
+        ("SURFACE_FROM", Constant::F32(SURFACE_FROM)),
+        ("SURFACE_TO", Constant::F32(SURFACE_TO)),
+        ("TENSION", Constant::F32(TENSION)),
+        ("LEVERS_LEAST", Constant::F32(LEVERS_LEAST)),
+        ("SKIN_CALM", Constant::F32(SKIN_CALM)),
         ("PULL_ZERO", Constant::F32(PULL_ZERO)),
         ("PULL", Constant::F32(PULL)),
         ("WETTING", Constant::F32(WETTING)),

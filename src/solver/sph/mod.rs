@@ -11,7 +11,7 @@
 //! How many are made is decided on the device, by sums of integers: each round lets the next one run, and one
 //! that is not needed has no workgroups.
 //!
-//! Passes over neighbours: the search, forces, half a round, a round and a half for each further one, motion.
+//! Passes over neighbours: the search, tension, forces, half a round, a round and a half for each further one, motion.
 
 mod passes;
 
@@ -33,6 +33,8 @@ const COLUMNS: u32 = 16;
 const COLUMNS_MOST: u32 = 256;
 /// Rounds at most. What is left after them is the next substep's to correct.
 const ROUNDS: u32 = 24;
+/// A substep takes what is fastest so many times farther than cfl spacings: 0.6 of one. A dam breaks alike from 0.4 to 0.8.
+const SPEED_SHARE: f64 = 1.5;
 /// A substep in free fall from rest moves a particle by half the square of this, in spacings.
 const FALL_SHARE: f64 = 0.15;
 /// Share of the period of the shortest capillary wave, times 1 / sqrt(2 pi): half of what a continuous surface
@@ -73,6 +75,8 @@ pub(super) struct Sph {
     pub motion: wgpu::Buffer,
     pub nature: wgpu::Buffer,
     pub density: wgpu::Buffer,
+    pub inward: wgpu::Buffer,
+    pub skin: wgpu::Buffer,
     pub answer: wgpu::Buffer,
     pub predicted: wgpu::Buffer,
     pub corrected: wgpu::Buffer,
@@ -88,6 +92,7 @@ pub(super) struct Sph {
 pub(super) struct SphBound {
     pub place: wgpu::BindGroup,
     pub near: wgpu::BindGroup,
+    pub skin: wgpu::BindGroup,
     pub forces: wgpu::BindGroup,
     /// First, odd and even rounds.
     pub implicit: [wgpu::BindGroup; 3],
@@ -121,6 +126,8 @@ impl Sph {
             motion: vectors("motion")?,
             nature: vectors("nature")?,
             density: gpu.storage::<[f32; 4]>("solver.sph_density", 2 * n)?,
+            inward: gpu.storage::<f32>("solver.sph_inward", n)?,
+            skin: gpu.storage::<[f32; 2]>("solver.sph_skin", n)?,
             answer: gpu.storage::<f32>("solver.sph_answer", n)?,
             predicted: vectors("predicted")?,
             corrected: vectors("corrected")?,
@@ -152,10 +159,10 @@ impl Sph {
         gpu.upload(&self.solve, &[Solve { liquids: self.liquids, columns: self.columns, groups }]);
     }
 
-    /// Longest substep: cfl spacing / |v|, a share of the time that a spacing of free fall takes, and of
+    /// Longest substep: [`SPEED_SHARE`] cfl spacing / |v|, a share of the time that a spacing of free fall takes, and of
     /// the period of the shortest capillary wave.
     pub fn limit_s(&self, spacing_m: f64, cfl: f64, speed_m_s: f64, acceleration_m_s2: f64, shortest_s: f64) -> f64 {
-        let moving_s = cfl * spacing_m / speed_m_s.max(1e-9);
+        let moving_s = SPEED_SHARE * cfl * spacing_m / speed_m_s.max(1e-9);
         let falling_s = (FALL_SHARE * (spacing_m / acceleration_m_s2.max(1e-9)).sqrt()).max(shortest_s);
         let waving_s = CAPILLARY * (spacing_m.powi(3) / (std::f64::consts::TAU * f64::from(self.tension_over_density).max(1e-12))).sqrt();
         moving_s.min(falling_s).min(waving_s)
@@ -196,12 +203,14 @@ impl Sph {
         let [even, odd] = &self.turns;
         let placed = [&self.place, &self.motion, &self.nature, &self.pressure, &self.errors, even, odd];
         let cells = [params, &self.place, &self.nature, &grid.cell_start, &grid.cell_end, colliders, &self.solve];
-        let found = [&self.density, &self.answer, control, &self.errors];
+        let found = [&self.density, &self.answer, control, &self.errors, &self.inward];
+        let tight = [&self.place, &self.nature, &self.neighbours, &self.near, &self.inward, &self.skin];
         let around = [params, &self.solve, matter, objects, colliders, &self.place, &self.nature];
-        let forced = [&self.density, &self.pressure, &self.motion, &self.predicted, &self.corrected];
+        let forced = [&self.density, &self.pressure, &self.motion, &self.skin, &self.predicted, &self.corrected];
         SphBound {
             place: gpu.bind(&p.sph_place, &[&places[..], &placed].concat()),
             near: gpu.bind(&p.sph_near, &[&cells[..], &lists, &found].concat()),
+            skin: gpu.bind(&p.sph_skin, &[&[params, &self.solve], &tight[..]].concat()),
             forces: gpu.bind(&p.sph_forces, &[&around[..], &lists, &forced].concat()),
             implicit: [implicit(&self.corrected, &self.motion), implicit(&self.motion, &self.slowed), implicit(&self.slowed, &self.motion)],
             settle: gpu.bind(&p.sph_settle, &[params, &self.near, &self.slowed, &self.predicted, &self.corrected]),
@@ -217,6 +226,10 @@ impl Sph {
         let job = |job: u32| Substep { job, ..*substep };
         recording.dispatch(&p.sph_place, &b.place, groups);
         recording.dispatch(&p.sph_near, &b.near, groups);
+        // Without tension its buffer stays zero.
+        if self.tension_over_density > 0.0 {
+            recording.dispatch(&p.sph_skin, &b.skin, groups);
+        }
         let implicit = viscous_rounds > 0;
         recording.dispatch_with(&p.sph_forces, &b.forces, &job(u32::from(implicit)), groups);
         for round in 0..viscous_rounds {
@@ -254,6 +267,11 @@ impl Solver {
         if let Some(sph) = &mut self.sph {
             sph.survey(&self.laws.substances, states);
             sph.upload_solve(&self.gpu, states.len());
+            if sph.tension_over_density == 0.0 {
+                let mut recording = Recording::default();
+                recording.clear(&sph.skin);
+                self.gpu.submit(&recording);
+            }
             self.params.has_liquid = u32::from(sph.liquids > 0);
         }
     }

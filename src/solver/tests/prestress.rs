@@ -54,9 +54,11 @@ fn a_captured_pot_with_a_stem_and_a_tendril_stays_as_it_stands() {
 
 #[test]
 fn supports_that_would_have_to_pull_are_let_go_of() {
-    // A table with a long overhang: the feet on the other side would have to be held down.
-    let inside = |p: Vec3| p.z > 0.2 || (p.x < 0.1 || p.x > 0.25 && p.x < 0.35) && (p.y < 0.1 || p.y > 0.2);
-    let particles = keep(&block(Vec3::ZERO, Vec3::new(0.7, 0.3, 0.3), 0.025, 3e6, 0.3), inside);
+    // A plank on three feet that hangs over at both ends. With spans l and overhangs a the foot in the middle bears
+    // q (5 l / 4 - 3 a^2 / (2 l)), here -0.9 q: it would have to be held down by two thirds of the weight.
+    let foot = |x: f32| [0.45, 0.7, 0.95].iter().any(|middle| (x - middle).abs() < 0.05);
+    let inside = |p: Vec3| p.z > 0.2 || foot(p.x);
+    let particles = keep(&block(Vec3::ZERO, Vec3::new(1.4, 0.2, 0.3), 0.025, 3e6, 0.3), inside);
     let mut settings = Settings::new(0.05);
     settings.ground = Some(Plane { height_m: 0.0, friction: 0.15, restitution: 0.0 });
     let mut solver = solver(settings, &particles);
@@ -66,7 +68,8 @@ fn supports_that_would_have_to_pull_are_let_go_of() {
     solver.advance(0.2, &stop).expect("an advance");
     let states = solver.states().expect("states");
     let moved = states.iter().zip(&particles.position_m).map(|(s, p)| s.position_m.distance(*p)).fold(0.0, f32::max);
-    assert!(moved < 0.0005, "it moved by {moved} m");
+    // Let go of only when it starts, the plank would bend up there by 9 mm.
+    assert!(moved < 0.001, "it moved by {moved} m");
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn closed_forms_of_walls_are_the_integrals_of_the_kernel() {
 }
 
 #[test]
-fn the_pull_between_particles_has_the_tension_of_fowlers_integral() {
+fn the_pull_of_solids_has_the_tension_of_fowlers_integral() {
     let parts = 2000;
     let at = (0..parts).map(|k| (f64::from(k) + 0.5) / f64::from(parts));
     let tension: f64 = at.map(|q| std::f64::consts::PI / 8.0 * q.powi(4) * twin::sph::pull(q) / f64::from(parts)).sum();
@@ -155,6 +155,7 @@ fn one_substep_pass_by_pass() {
     run(&|r| {
         r.dispatch(&p.sph_place, &b.place, groups);
         r.dispatch(&p.sph_near, &b.near, groups);
+        r.dispatch(&p.sph_skin, &b.skin, groups);
     });
     let want = twin::sph::near(&sorted, &around);
     let near: Vec<u32> = gpu().read(&sph.near, n).expect("lists");
@@ -176,6 +177,12 @@ fn one_substep_pass_by_pass() {
             assert!((f64::from(density[i][3]) - want[i].density).abs() < 1e-5, "{} {}", density[i][3], want[i].density);
             assert!((f64::from(answer[i]) / want[i].answer - 1.0).abs() < 1e-3, "{} {}", answer[i], want[i].answer);
         }
+    }
+    let pulls: Vec<[f32; 2]> = gpu().read(&sph.skin, n).expect("pulls");
+    let skin = twin::sph::skin(&want, cell);
+    assert!(skin.iter().filter(|s| s[1] > 0.5).count() > 20);
+    for i in (0..n).filter(|&i| want[i].liquid) {
+        assert!((0..2).all(|k| (f64::from(pulls[i][k]) - skin[i][k]).abs() < 2e-3 * (1.0 + skin[i][k])), "{:?} {:?}", pulls[i], skin[i]);
     }
     let errors: Vec<u32> = gpu().read(&sph.errors, SPH_SLOTS as usize).expect("errors");
     let stiffest = want.iter().map(|p| p.viscous).fold(0.0, f64::max);
@@ -246,6 +253,7 @@ fn one_substep_pass_by_pass() {
             assert_eq!(s.position_m, sorted[i].position_m);
             continue;
         }
+        v = twin::sph::braked(me, v, &around, dt);
         let mut x = me.x + v * dt;
         for c in &colliders {
             let touch = c.touch(x.as_vec3());

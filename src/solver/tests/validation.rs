@@ -57,6 +57,7 @@ quick_cases! {
     v18_dam_break_of_particles: "V18 SPH";
     v19_pool_of_particles: "V19 SPH";
     v20_channel_of_particles: "V20 SPH";
+    v22_drops_of_particles: "V22 SPH";
     v24_ball_into_jelly: "V24";
     v24_pairs: "V24 pairs";
     thin_plate: "thin plate";

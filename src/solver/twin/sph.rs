@@ -80,6 +80,8 @@ pub struct Particle {
     pub density: f64,
     /// What walls have of that.
     pub wall: DVec3,
+    /// Of liquid alone, and by how much walls stand in for it.
+    pub inward: f64,
     /// Growth of a push along them.
     pub hidden: f64,
     pub answer: f64,
@@ -109,6 +111,7 @@ pub fn near(states: &[ParticleState], around: &Surroundings) -> Vec<Particle> {
             gradient: DVec3::ZERO,
             density: 0.0,
             wall: DVec3::ZERO,
+            inward: 0.0,
             hidden: 0.0,
             answer: 0.0,
             viscous: 0.0,
@@ -118,6 +121,7 @@ pub fn near(states: &[ParticleState], around: &Surroundings) -> Vec<Particle> {
     for i in 0..all.len() {
         let mut me = all[i].clone();
         me.density = if me.liquid { me.volume * weight(0.0) } else { 0.0 };
+        let mut inward = DVec3::ZERO;
         for (j, other) in all.iter().enumerate() {
             let y = (me.x - other.x) / cell;
             let q = y.length();
@@ -128,17 +132,20 @@ pub fn near(states: &[ParticleState], around: &Surroundings) -> Vec<Particle> {
             let (felt, slope) = felt(&me, other, q);
             me.density += other.volume * felt;
             me.gradient += y / q * (other.volume * slope);
+            inward += y / q * (other.volume * slope * if other.liquid { 1.0 } else { 0.5 });
             me.answer += me.volume * other.volume * slope * slope * other.lightness;
             me.viscous += 2.0 * pair_viscosity(&me, other) * other.volume * -derivative(weight, q) * q / (q * q + 0.01);
         }
         if me.liquid {
             walls(&mut me, around);
+            me.inward = (inward + me.wall).length();
             let change = me.gradient.dot(along_walls(&me, me.gradient)) * me.lightness;
             me.answer = 1.0 / ((me.answer + change) * me.density.max(1.0)).max(1e-3 * me.lightness);
         }
         me.viscous *= f64::from(VISCOUS) * me.lightness / (cell * cell);
         (all[i].neighbours, all[i].density, all[i].gradient) = (me.neighbours, me.density, me.gradient);
         (all[i].wall, all[i].hidden, all[i].answer, all[i].viscous) = (me.wall, me.hidden, me.answer, me.viscous);
+        all[i].inward = me.inward;
     }
     all
 }
@@ -207,20 +214,59 @@ pub fn error(all: &[Particle], i: usize, corrected: &[DVec3], cell: f64, dt_s: f
     drift + rate / cell * dt_s
 }
 
+/// How far a particle belongs to the surface.
+fn on_surface(p: &Particle) -> f64 {
+    let share = ((p.inward - f64::from(SURFACE_FROM)) / f64::from(SURFACE_TO - SURFACE_FROM)).clamp(0.0, 1.0);
+    if p.liquid { share * share * (3.0 - 2.0 * share) } else { 0.0 }
+}
+
+fn tug(q: f64) -> f64 {
+    q * (1.0 - q)
+}
+
+/// `sph_skin.wgsl`: what each pulls with, and how far it belongs to the surface.
+pub fn skin(all: &[Particle], cell: f64) -> Vec<[f64; 2]> {
+    let of = |me: &Particle| {
+        let lever = |&&j: &&usize| {
+            let q = (me.x - all[j].x).length() / cell;
+            on_surface(&all[j]) * tug(q) * q
+        };
+        let levers: f64 = me.neighbours.iter().filter(|&&j| all[j].liquid).map(|j| lever(&j)).sum();
+        let strength = f64::from(TENSION) * me.tension * me.volume * me.inward * on_surface(me) / levers.max(f64::from(LEVERS_LEAST));
+        [strength, on_surface(me)]
+    };
+    all.iter().map(of).collect()
+}
+
+/// What the friction of walls leaves of a velocity.
+pub fn braked(me: &Particle, v: DVec3, around: &Surroundings, dt_s: f64) -> DVec3 {
+    let full = (me.density - me.hidden / (1.0 + me.hidden)).clamp(0.3, 1.0);
+    let brake = |u: DVec3, (s, normal, holds): (f64, DVec3, bool)| {
+        let across = normal * u.dot(normal);
+        let rate = f64::from(WALL_FRICTION) * (u - across).length() * 2.0 * (1.0 - s.max(0.0)) / f64::from(around.params.cell_m) / full;
+        if holds { across + (u - across) / (1.0 + dt_s * rate) } else { u }
+    };
+    walls_near(me.x, around).into_iter().fold(v, brake)
+}
+
 /// `sph_forces.wgsl`: velocities after weight, tension and, where `viscous`, viscosity, but without pressures.
 pub fn forces(all: &[Particle], around: &Surroundings, dt_s: f64, viscous: bool) -> Vec<DVec3> {
     let cell = f64::from(around.params.cell_m);
-    let of = |me: &Particle| {
+    let skin = skin(all, cell);
+    let of = |(i, me): (usize, &Particle)| {
         let mut sum = DVec3::ZERO;
         for &j in &me.neighbours {
             let other = &all[j];
             let y = (me.x - other.x) / cell;
             let (q, along) = (y.length(), y.normalize());
-            let tension = (me.tension + other.tension) * if me.liquid && other.liquid { 0.5 } else { f64::from(WETTING) };
-            sum -= along * (tension * other.volume * pull(q));
+            let ([strength, member], [its, there]) = (skin[i], skin[j]);
+            let alike = me.liquid && other.liquid;
+            let wetted = f64::from(WETTING) * (me.tension + other.tension) * other.volume * pull(q);
+            sum -= along * if alike { (strength * there + its * member) * tug(q) / me.volume } else { wetted };
+            let calm = f64::from(SKIN_CALM) * ((me.tension + other.tension) * cell / (me.lightness + other.lightness)).sqrt();
             let approach = (me.v - other.v).dot(along);
             let eddy = f64::from(EDDIES) * cell * approach.abs() * 2.0 / (me.lightness + other.lightness);
-            let eta = eddy + if viscous { pair_viscosity(me, other) } else { 0.0 };
+            let eta = eddy + if alike { calm * member * there } else { 0.0 } + if viscous { pair_viscosity(me, other) } else { 0.0 };
             sum += along * (f64::from(VISCOUS) * eta * other.volume * derivative(weight, q) * approach * q / (q * q + 0.01));
         }
         if me.liquid {
@@ -233,7 +279,7 @@ pub fn forces(all: &[Particle], around: &Surroundings, dt_s: f64, viscous: bool)
         let weight_m_s2 = (Vec3::from(around.params.gravity_m_s2) + around.accelerations[me.object]).as_dvec3();
         me.v + (weight_m_s2 + sum * (me.lightness / (cell * cell))) * dt_s
     };
-    all.iter().map(of).collect()
+    all.iter().enumerate().map(of).collect()
 }
 
 /// `sph_implicit.wgsl`, with an exact answer: (1 - dt L) v = v*, by Gauss and Seidel.

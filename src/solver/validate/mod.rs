@@ -17,6 +17,7 @@ mod repeat;
 mod rigid;
 mod sliding;
 mod sph;
+mod sph_drops;
 mod waves;
 
 #[cfg(test)]
@@ -146,6 +147,8 @@ pub const CASES: &[Case] = &[
     Case { name: "V18 SPH", quick: true, run: sph::dam_break },
     Case { name: "V19 SPH", quick: true, run: sph::hydrostatic },
     Case { name: "V20 SPH", quick: true, run: sph::poiseuille },
+    Case { name: "V21 SPH", quick: false, run: sph_drops::swinging },
+    Case { name: "V22 SPH", quick: true, run: sph_drops::laplace },
     Case { name: "V23", quick: false, run: coupling::floating },
     Case { name: "V23 SPH", quick: false, run: sph::buoyancy },
     Case { name: "V26", quick: true, run: repeat::same_bits },
