@@ -36,6 +36,8 @@ pub(super) struct Plan {
     pub substeps: u32,
     /// A sort before each so many.
     pub sort_every: u32,
+    /// Liquids on the grid are poured anew before each so many: at every sort, and between.
+    pub pour_every: u32,
     /// Rounds of implicit viscosity of the liquids beside the grid.
     pub viscous_rounds: u32,
 }
@@ -69,11 +71,12 @@ const BODY_SHARE: f64 = 0.125;
 const ROOM_MOST: i32 = 8;
 /// Cells that anything may travel in one segment.
 const SEGMENT_CELLS: f64 = 32.0;
-/// Sorting is amortised over at most so many substeps. Runs of equal cells break up meanwhile, and what
-/// liquids find at each sort grows old.
+/// Sorting is amortised over at most so many substeps: runs of equal cells break up meanwhile.
 const SORT_EVERY: u32 = 4;
 /// Where workgroups go by block, who moves within it does not matter.
 const SORT_BLOCKS_EVERY: u32 = 32;
+/// What liquids find when they are poured grows old.
+const POUR_EVERY: u32 = 4;
 /// Particle-substeps of one submit: about 0.1 s on two CPU cores, so that a stop is heard.
 const CPU_BATCH: u32 = 400_000;
 /// Substeps of one submit on a GPU, the first of a segment and the longest: while little is recorded the device waits.
@@ -329,20 +332,24 @@ impl Solver {
         let cut = rest_s > 1e-6 * dt_s || whole < 1.0;
         // Half the slack by the present speed; the watch sees to the rest.
         let sorts = 0.5 * f64::from(self.params.slack) * cell_m / (speed_m_s * dt_s).max(1e-12);
+        // Lists of neighbours are made from the cells of the sort.
+        let sort_every = if self.sph().is_some() { 1 } else { (sorts as u32).clamp(1, (self.most_between_sorts() >> halvings).max(1)) };
+        let pour_every = sort_every.min((POUR_EVERY >> halvings).max(1));
         Plan {
             dt_s: dt_s as f32,
             last_dt_s: if cut { rest_s as f32 } else { dt_s as f32 },
             substeps: whole as u32 + u32::from(cut),
-            // Lists of neighbours are made from the cells of the sort.
-            sort_every: if self.sph().is_some() { 1 } else { (sorts as u32).clamp(1, (self.most_between_sorts() >> halvings).max(1)) },
+            // What was poured lies where the sort put it.
+            sort_every: if self.liquid.is_some() { sort_every / pour_every * pour_every } else { sort_every },
+            pour_every,
             viscous_rounds: self.sph().map_or(0, |sph| sph.viscous_rounds(cell_m, dt_s)),
         }
     }
 
     fn most_between_sorts(&self) -> u32 {
         match self.gpu.tier {
-            Tier::Gpu if self.liquid.is_none() => SORT_BLOCKS_EVERY,
-            _ => SORT_EVERY,
+            Tier::Gpu => SORT_BLOCKS_EVERY,
+            Tier::Cpu => SORT_EVERY,
         }
     }
 

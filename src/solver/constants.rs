@@ -159,8 +159,9 @@ pub const USUAL_STEP_S: f32 = 1e-4;
 pub const FILL_UNITS: f32 = 1_048_576.0;
 /// Where less of a node's spline is on the free side of walls, the node counts for nothing.
 pub const ROOM_LEAST: f32 = 0.02;
-/// Liquid whose nodes are all as full as this is inside.
-pub const FULL: f32 = 0.8;
+/// Liquid whose nodes are all as full as this is inside. Elsewhere it is only ever made denser, which noise drives on:
+/// at 0.8 what floats sinks by a millimetre a second.
+pub const FULL: f32 = 0.6;
 /// Share of the difference in density that liquid makes up in the time that sound takes through a cell.
 pub const CALM: f32 = 0.008;
 /// Change of fullness from node to node below which there is no surface.

@@ -1,5 +1,5 @@
-//! What liquids need beside their law: their density, and their surface tension, on the grid. At each
-//! sort they are poured onto the nodes; J is brought back to the density found there, and the pull of
+//! What liquids need beside their law: their density, and their surface tension, on the grid. Every few
+//! substeps they are poured onto the nodes; J is brought back to the density found there, and the pull of
 //! the surface is worked out that the grid's pass applies until the next sort.
 
 use super::advance::Substep;
@@ -121,7 +121,7 @@ impl Solver {
         })
     }
 
-    /// Adds what follows a sort, `span_s` before the next one.
+    /// Pours the liquids, `span_s` before the next time.
     pub(super) fn record_liquid(&self, b: &LiquidBound, active_groups: &wgpu::Buffer, span_s: f32, recording: &mut Recording) {
         let Some(p) = &self.liquid else { return };
         let groups = self.particle_groups();

@@ -55,8 +55,8 @@ impl Solver {
             self.current = 1 - self.current;
         }
         let b = &bound[self.current];
-        if let Some(liquid) = b.liquid.as_ref().filter(|_| sorts) {
-            let span_s = plan.time_s((step + plan.sort_every).min(plan.substeps)) - plan.time_s(step);
+        if let Some(liquid) = b.liquid.as_ref().filter(|_| step.is_multiple_of(plan.pour_every)) {
+            let span_s = plan.time_s((step + plan.pour_every).min(plan.substeps)) - plan.time_s(step);
             self.record_liquid(liquid, &b.active_groups, span_s as f32, recording);
         }
         if let Some(volume) = b.volume.as_ref().filter(|_| sorts) {

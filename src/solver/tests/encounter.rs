@@ -93,7 +93,7 @@ fn layers_meet_as_their_twins_do() {
     let substances = solver.laws.substances.clone();
     let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &[Vec3::ZERO; 3], substances: &substances };
     let dt_s = 4e-4;
-    let plan = Plan { dt_s, last_dt_s: dt_s, substeps: 1, sort_every: 1, viscous_rounds: 0 };
+    let plan = Plan { dt_s, last_dt_s: dt_s, substeps: 1, sort_every: 1, pour_every: 1, viscous_rounds: 0 };
     let bound = solver.bind_both().expect("bound");
     let gpu = Gpu::shared_for_tests().expect("a device");
     let mut recording = Recording::default();

@@ -83,7 +83,7 @@ pub(super) fn scene_on(gpu: &Gpu, substances: [Substance; 2]) -> (Solver, Vec<Pa
         })
         .expect("an edit");
     solver.edit_shown(|_, g| g + Mat3::from_cols(past.vec(), past.vec(), past.vec()) * 0.5).expect("an edit");
-    solver.set_activations(&Plan { dt_s: DT_S, last_dt_s: DT_S, substeps: 2, sort_every: 1, viscous_rounds: 0 }).expect("room");
+    solver.set_activations(&Plan { dt_s: DT_S, last_dt_s: DT_S, substeps: 2, sort_every: 1, pour_every: 1, viscous_rounds: 0 }).expect("room");
     let seen = solver.look().expect("a look");
     solver.fit_window(seen.low, seen.high, 4).expect("a window");
     solver.set_surroundings();

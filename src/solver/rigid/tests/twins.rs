@@ -66,7 +66,7 @@ fn contacts_impulses_and_places_are_those_of_the_twin() {
         for k in (4 * m..4 * m + 4).take(want.count as usize) {
             let (want, got) = (&contacts[k], &got_contacts[k]);
             // Where surfaces face each other flatly rounding moves the place, and hardly the gap.
-            assert!(twin::apart(&want.local, &got.local) < 3e-5 && (want.local[3] - got.local[3]).abs() < 1e-6, "{want:?} {got:?}");
+            assert!(twin::apart(&want.local, &got.local) < 1e-4 && (want.local[3] - got.local[3]).abs() < 1e-6, "{want:?} {got:?}");
             assert!(twin::apart(&want.normal, &got.normal) < 1e-3 && twin::apart(&want.impulse, &got.impulse) < 1e-5, "{want:?} {got:?}");
         }
     }
