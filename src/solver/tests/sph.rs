@@ -1,6 +1,7 @@
 //! Liquids of smoothed particles: each pass against its twin, and what a run keeps.
 
-use super::{block, solver};
+use super::solver;
+use super::twins::Noise;
 use crate::Stop;
 use crate::gpu::{Gpu, Recording};
 use crate::solver::advance::Substep;
@@ -9,6 +10,7 @@ use crate::solver::core::Solver;
 use crate::solver::obstacles;
 use crate::solver::state::ParticleState;
 use crate::solver::twin::{self, Surroundings};
+use crate::solver::validate::{block, joined};
 use crate::solver::{Collider, Particles, Plane, Settings, Substance};
 use crate::spec::{BoxShape, ColliderShape, ElasticModel, PlaneShape};
 use glam::{DVec3, Vec3};
@@ -16,19 +18,6 @@ use glam::{DVec3, Vec3};
 const D_M: f32 = 0.025;
 const CELL_M: f32 = 2.0 * D_M;
 const DT_S: f32 = 2e-3;
-
-/// Between -1 and 1, always the same.
-struct Noise(u32);
-
-impl Noise {
-    fn vec(&mut self) -> Vec3 {
-        let mut next = || {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (self.0 >> 8) as f32 / (1 << 23) as f32 - 1.0
-        };
-        Vec3::new(next(), next(), next())
-    }
-}
 
 fn gpu() -> Gpu {
     Gpu::shared_for_tests().expect("a device")
@@ -39,18 +28,10 @@ fn liquid(low: Vec3, size: Vec3, viscosity_pa_s: f32, surface_tension_n_m: f32) 
     Particles { substances, ..block(low, size, D_M, 1e5, 0.3) }
 }
 
-fn with(mut a: Particles, b: Particles, substance: Substance) -> Particles {
-    let n = b.len();
-    a.position_m.extend(b.position_m);
-    a.velocity_m_s.extend(b.velocity_m_s);
-    a.volume_m3.extend(b.volume_m3);
-    a.density_kg_m3.extend(b.density_kg_m3.iter().map(|rho| rho * 0.5));
-    a.young_pa.extend(b.young_pa);
-    a.poisson.extend(b.poisson);
-    a.substance.extend(vec![a.substances.len() as u16; n]);
-    a.substances.push(substance);
-    a.object.extend(vec![1; n]);
-    a
+/// With a body of another object and substance, half as dense as it says.
+fn with(a: Particles, mut b: Particles, substance: Substance) -> Particles {
+    b.density_kg_m3.iter_mut().for_each(|rho| *rho *= 0.5);
+    joined(a, Particles { substances: vec![substance], ..b })
 }
 
 fn wall(point: Vec3, normal: Vec3) -> Collider {
