@@ -80,18 +80,19 @@ pub(super) fn dropped(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let pose = |at: &dyn Fn(usize) -> Vec3| of(at, &|p| p.z > 0.75 && p.x > 0.0) - of(at, &|p| p.z < 0.2);
     let rest = pose(&|i| particles.position_m[i]);
     let (mut swung_m, mut late) = (0f32, Vec::new());
-    for k in 1..=75 {
-        solver.advance(0.04 * f64::from(k), &Stop::default())?;
+    for k in 1..=150 {
+        solver.advance(0.02 * f64::from(k), &Stop::default())?;
         let states = solver.states()?;
         let off = pose(&|i| states[i].position_m) - rest;
         swung_m = swung_m.max(off.length());
-        if k > 50 {
+        if k > 100 {
             late.push(off);
         }
     }
     // The mean of the last second: what still trembles does not count.
     let off_m = (late.iter().sum::<Vec3>() / late.len() as f32).length();
-    let swing = Check::new("dropped, bends", "centimetres", "elastic stems", "m").compare(0.05, f64::from(swung_m), 0.8);
+    // No formula holds for bent stems that swing so far; a change of this is one of how things bend.
+    let swing = Check::new("dropped, bends", "as when it was first measured", "solver version 19", "m").compare(0.0551, f64::from(swung_m), 0.1);
     let back = Check::new("dropped, comes back", "0, within 1 % of its height", "elastic stems", "m");
     Ok(vec![swing, back.compare(0.0, f64::from(off_m), 0.01 * HEIGHT_M)])
 }
