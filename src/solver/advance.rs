@@ -189,16 +189,15 @@ impl Solver {
                 self.report(&plan, &now, report);
                 return Ok(());
             };
-            // How wide the window happens to be is no part of the state: leaving it asks for room and for nothing else, so
-            // that a run from a checkpoint, which makes its own, goes on to the same bits.
-            if now.window && now.nonfinite == 0 && self.more_window() {
-                self.roll_back(start, order);
-                report.retries += 1;
-                continue;
-            }
             tracing::debug!(time_s = self.time_s, dt_s = plan.dt_s, reason, "rolled back");
             self.roll_back(start, order);
             report.retries += 1;
+            // How wide the window happens to be is no part of the state: leaving it asks for room and teaches nothing, so
+            // that a run from a checkpoint, which makes its own, goes on to the same bits.
+            if now.window && now.nonfinite == 0 && tries.room < ROOM_MOST {
+                tries.room *= 2;
+                continue;
+            }
             self.wary.trouble();
             tries.trips += 1;
             let now = now.sane(self.params.speed_most);
@@ -222,9 +221,6 @@ impl Solver {
     /// What is done about a segment that failed. Room costs little; substeps half as long cost as many again, which
     /// is worth it while a frame's budget lasts; beyond that what cannot be resolved is softened, at the same cost.
     fn way_on(&mut self, now: &Watch, plan: &Plan, faster: bool, tries: &mut Tries) -> Result<WayOn, SolverError> {
-        if now.window && tries.room < ROOM_MOST {
-            tries.room *= 2;
-        }
         // Longer lists are no matter of the time step.
         if now.crowded && self.lengthen_lists()? {
             return Ok(WayOn::Wider);
@@ -448,8 +444,7 @@ impl Solver {
     }
 
     /// Keeps the present state on the device.
-    fn backup(&mut self) {
-        self.window_room = 1;
+    fn backup(&self) {
         self.copy_state(&self.buffers[self.current], &self.backup);
         let mut recording = Recording::default();
         self.kept().for_each(|k| k.keep(&mut recording));

@@ -110,8 +110,6 @@ pub struct Solver {
     velocity: wgpu::Buffer,
     pub(super) grid: Option<GridBuffers>,
     pub(super) window: Option<Window>,
-    /// Its margin is so many times what the segment should need.
-    pub(super) window_room: i32,
     /// What the watch saw at the present time; none where something changed since.
     pub(super) seen: Option<Watch>,
     /// What had to be softened since the last report.
@@ -186,7 +184,6 @@ impl Solver {
             velocity: gpu.storage::<[f32; 4]>("solver.frame_velocity", n)?,
             grid: None,
             window: None,
-            window_room: 1,
             seen: None,
             softened,
             time_s: 0.0,

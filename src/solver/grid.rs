@@ -107,8 +107,6 @@ const LATTICE_MOST: i32 = 1 << 20;
 const BODIES_MOST: i32 = 1 << 28;
 /// Workgroups along an axis that every device runs.
 pub(super) const GROUPS_MOST: u64 = 65_535;
-/// Times as wide a margin of the window as a segment's speeds ask for, at most.
-const WINDOW_ROOM_MOST: i32 = 8;
 
 /// What a scene asks of its grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -216,7 +214,6 @@ impl Solver {
 
     /// Makes the window hold stencils from `low` to `high` with room around them.
     pub(super) fn fit_window(&mut self, low: IVec3, high: IVec3, margin: i32) -> Result<(), SolverError> {
-        let margin = margin * self.window_room;
         if self.window.is_some_and(|w| w.holds(low, high, margin)) {
             return Ok(());
         }
@@ -246,13 +243,6 @@ impl Solver {
             }
         }
         Ok(())
-    }
-
-    /// Asks for a wider window until the next backup; false where it is as wide already as helps.
-    pub(super) fn more_window(&mut self) -> bool {
-        let may = self.window_room < WINDOW_ROOM_MOST;
-        self.window_room *= if may { 2 } else { 1 };
-        may
     }
 
     /// Makes room for so many blocks, and some more to come, where there is none yet.
