@@ -158,7 +158,7 @@ impl Solver {
         let rigid = rigid::assemble(&states, &particles.substances, &colliders, settings.cell_m)?.map(|all| Rigid::new(gpu, &all)).transpose()?;
         let passes = Passes::new(gpu);
         let mut solver = Solver {
-            transfers: Transfers::new(gpu, &passes.p2g),
+            transfers: Transfers::new(gpu),
             passes,
             params_buffer: params_buffer(gpu, &params, 0)?,
             colliders_buffer: gpu.storage_from("solver.colliders", &padded(&colliders, 1))?,

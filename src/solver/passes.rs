@@ -64,7 +64,6 @@ passes! {
     scatter: ["cell", "scatter"] [Read, Read, Read, Write, Read, Write] 0;
     order: ["control", "order"] [Read, Read, Read, Read, Write, Write, Read, Read, Write] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
-    p2g: ["control", "substep", "substance", "hash", "particle", "contact", "on_grid", "marks", "p2g"] [Read, Read, Read, Read, Write, Write, Write, Read] SUBSTEP;
     grid: ["control", "substep", "contact", "node", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;
     kick: ["particle", "particle_write", "kick_of", "kick"] [Read, Write, Read] KICK;

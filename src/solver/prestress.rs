@@ -342,7 +342,7 @@ impl Solver {
     /// Force left over under the present stress.
     fn record_system(&self, scene: &Scene, which: u32, recording: &mut Recording) {
         let substep = job(which, scene.round);
-        recording.dispatch_with(&self.passes.p2g, &scene.bound.p2g, &substep, self.particle_groups());
+        self.record_p2g(&scene.bound, &substep, recording);
         recording.indirect_with(&self.passes.prestress_residual, &scene.groups.residual, &substep, &scene.grid.active_groups, 0);
         recording.dispatch_with(&self.passes.prestress_control, &scene.groups.control, &substep, [1, 1, 1]);
     }
@@ -395,7 +395,7 @@ impl Solver {
         let (now, turn) = (job(CURVATURE, scene.round), job(TURN, scene.round));
         let (blocks, scene) = (&scene.grid.active_groups, &*scene);
         recording.dispatch_with(&passes.prestress_gather, &scene.groups.gather, &before, groups);
-        recording.dispatch_with(&passes.p2g, &scene.bound.p2g, &now, groups);
+        self.record_p2g(&scene.bound, &now, recording);
         recording.indirect_with(&passes.prestress_product, &scene.groups.product, &now, blocks, 0);
         recording.dispatch_with(&passes.prestress_control, &scene.groups.control, &now, [1, 1, 1]);
         recording.indirect_with(&passes.prestress_update, &scene.groups.update, &now, blocks, 0);

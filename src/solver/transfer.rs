@@ -18,6 +18,7 @@ mod cell {
     passes! {
         /// A thread for each particle.
         CellPasses;
+        p2g: ["control", "substep", "substance", "hash", "particle", "contact", "on_grid", "marks", "p2g"] [Read, Read, Read, Read, Write, Write, Write, Read] SUBSTEP;
         g2p: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "contact", "gather", "move", "g2p"] [Read, Write, Write, Read, Read, Read, Write, Read] SUBSTEP;
     }
 }
@@ -105,10 +106,13 @@ const FUSED_BYTES: u32 = 20 << 10;
 const ITEM_GROUPS: u64 = 16;
 
 impl Transfers {
-    /// Of elastic matter. `p2g` is the pass by cell, which the prestress uses on every device.
-    pub fn new(gpu: &Gpu, p2g: &Kernel) -> Transfers {
+    /// Of elastic matter.
+    pub fn new(gpu: &Gpu) -> Transfers {
         match gpu.tier {
-            Tier::Cpu => Transfers { by_block: false, p2g: p2g.clone(), g2p: cell::CellPasses::new(gpu).g2p, fused: None },
+            Tier::Cpu => {
+                let cell::CellPasses { p2g, g2p } = cell::CellPasses::new(gpu);
+                Transfers { by_block: false, p2g, g2p, fused: None }
+            }
             Tier::Gpu => {
                 let tile::TilePasses { p2g_tile, g2p_tile } = tile::TilePasses::new(gpu);
                 let fused = (gpu.device.limits().max_compute_workgroup_storage_size >= FUSED_BYTES).then(|| fused::FusedPasses::new(gpu).fused);

@@ -151,7 +151,7 @@ fn the_exchange_with_soft_matter_is_that_of_the_twin() {
     solver.current = 1 - solver.current;
     let b = &bound[solver.current];
     recording.dispatch_with(&passes.stress, &b.stress, &substep, groups);
-    recording.dispatch_with(&passes.p2g, &b.p2g, &substep, groups);
+    solver.record_p2g(b, &substep, &mut recording);
     rigid.record_meeting(b.rigid.as_ref().expect("rigid passes"), &substep, groups, &mut recording);
     gpu.submit(&recording);
 
