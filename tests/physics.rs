@@ -39,6 +39,7 @@ long_cases! {
     a_cylinder_of_sand_runs_out_as_experiments_say: "V15";
     v19_sloshing: "V19 sloshing";
     v21_swinging_drop: "V21";
+    a_drop_of_smoothed_particles_swings: "V21 SPH";
     cubes_float_as_archimedes_says: "V23";
     a_cube_floats_on_particles_too: "V23 SPH";
     a_stack_of_ten_stands: "stack";

@@ -47,6 +47,9 @@ pub struct ProxyRequest<'a> {
     pub cell_m: f32,
     /// Voxels or hull.
     pub kind: ProxyKind,
+    /// Whether it stands by its own elasticity: threads that cannot are no matter then. What flows, falls apart or is
+    /// rigid has them.
+    pub stands: bool,
     /// Of the jitter.
     pub seed: u64,
 }
@@ -139,20 +142,24 @@ struct Shape {
 
 /// The solid of an object's Gaussians: shell, what it encloses, loose pieces joined, nothing thinner than the
 /// Gaussians' spacing, no thread that could not stand.
-fn shape(gaussians: &Gaussians, ground_m: f32) -> Result<Shape, ProxyError> {
+fn shape(gaussians: &Gaussians, ground_m: f32, stands: bool) -> Result<Shape, ProxyError> {
     let density = density::rasterise(gaussians, ground_m, fill::CLOSING_SPACINGS)?;
     let mut solid = fill::solid(&density.grid, &density.occupied, density.spacing_m);
     let joined = join::join(&density.grid, &mut solid, density.spacing_m);
     thicken::thicken(&density.grid, &mut solid);
     let mut sections = Sections::find(&density.grid, &solid);
-    let threads = young::let_go_of_threads(&mut sections);
-    sections.clear(&mut solid);
+    let mut threads = young::let_go_of_threads(&mut sections);
+    if stands {
+        sections.clear(&mut solid);
+    } else {
+        threads = 0;
+    }
     Ok(Shape { density, solid, sections, joined, threads })
 }
 
 /// Makes a solid of an object's Gaussians and fills it with particles.
 pub fn build(request: &ProxyRequest) -> Result<Solid, ProxyError> {
-    let Shape { density, mut solid, sections, mut joined, mut threads } = shape(request.gaussians, request.ground_m)?;
+    let Shape { density, mut solid, sections, mut joined, mut threads } = shape(request.gaussians, request.ground_m, request.stands)?;
     let spacing_m = 0.5 * request.cell_m;
     let extent_m = density.grid.size.as_vec3().max_element() * density.grid.voxel_m;
     let cell_error = ProxyError::Cell { cell_m: request.cell_m, extent_m };
@@ -161,7 +168,7 @@ pub fn build(request: &ProxyRequest) -> Result<Solid, ProxyError> {
     }
     // The thing stands as what it is, whatever it is simulated as.
     let stance = young::stance(request.gaussians, &density.grid, &sections);
-    let mut hung = hung(request.gaussians, &density.grid, &sections);
+    let mut hung = if threads > 0 { hung(request.gaussians, &density.grid, &sections) } else { Vec::new() };
     if request.kind == ProxyKind::Hull {
         solid = hull::solid(&density.grid, request.gaussians)?;
         (joined, threads) = Default::default();
@@ -181,7 +188,7 @@ pub fn build(request: &ProxyRequest) -> Result<Solid, ProxyError> {
 
 /// How stiff the thing has to be to stand, known before a solid is made of it; nothing where its Gaussians make none.
 pub fn stance_of(gaussians: &Gaussians, ground_m: f32) -> Stance {
-    shape(gaussians, ground_m).map(|shape| young::stance(gaussians, &shape.density.grid, &shape.sections)).unwrap_or_default()
+    shape(gaussians, ground_m, true).map(|shape| young::stance(gaussians, &shape.density.grid, &shape.sections)).unwrap_or_default()
 }
 
 /// Orders the samples along a Morton curve and shares the body's volume among them.

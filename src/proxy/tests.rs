@@ -46,7 +46,7 @@ fn disc(radius_m: f32, centre: Vec3, apart_m: f32) -> Vec<Vec3> {
 }
 
 fn solid(gaussians: &Gaussians, ground_m: f32, cell_m: f32, kind: ProxyKind) -> Solid {
-    build(&ProxyRequest { gaussians, ground_m, cell_m, kind, seed: 1 }).unwrap()
+    build(&ProxyRequest { gaussians, ground_m, cell_m, kind, stands: true, seed: 1 }).unwrap()
 }
 
 fn auto(gaussians: &Gaussians, density_kg_m3: f64) -> YoungAuto {
@@ -231,7 +231,7 @@ fn the_hull_is_convex_and_has_its_volume() {
 #[test]
 fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
     let (bouquet, _) = bouquet();
-    let make = |seed| build(&ProxyRequest { gaussians: &bouquet, ground_m: 0.0, cell_m: 0.03, kind: ProxyKind::Voxel, seed }).unwrap();
+    let make = |seed| build(&ProxyRequest { gaussians: &bouquet, ground_m: 0.0, cell_m: 0.03, kind: ProxyKind::Voxel, stands: true, seed }).unwrap();
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let (many, one) = (make(7), alone.install(|| make(7)));
     assert_eq!(many, one);
@@ -241,7 +241,7 @@ fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
 #[test]
 fn degenerate_input_is_a_small_solid_or_a_clear_error() {
     let at = |points: Vec<Vec3>, size_m: f32| skin(points, size_m);
-    let request = |gaussians: &Gaussians, kind| build(&ProxyRequest { gaussians, ground_m: -1.0, cell_m: 0.02, kind, seed: 1 });
+    let request = |gaussians: &Gaussians, kind| build(&ProxyRequest { gaussians, ground_m: -1.0, cell_m: 0.02, kind, stands: true, seed: 1 });
     let voxel = |gaussians: &Gaussians| request(gaussians, ProxyKind::Voxel);
 
     let one = voxel(&at(vec![Vec3::ZERO], 0.1)).unwrap();
@@ -268,13 +268,15 @@ fn degenerate_input_is_a_small_solid_or_a_clear_error() {
     assert!(matches!(voxel(&at(vec![Vec3::NEG_Z * 5.0; 3], 0.1)), Err(ProxyError::BelowGround { .. })));
     let ball = at(sphere(0.5, Vec3::ZERO, 2000), 0.01);
     for cell_m in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-6] {
-        let built = build(&ProxyRequest { gaussians: &ball, ground_m: -1.0, cell_m, kind: ProxyKind::Voxel, seed: 1 });
+        let built = build(&ProxyRequest { gaussians: &ball, ground_m: -1.0, cell_m, kind: ProxyKind::Voxel, stands: true, seed: 1 });
         assert!(matches!(built, Err(ProxyError::Cell { .. })), "{cell_m}");
     }
     // any scale: the solid only scales
     for metres in [1e-6, 1e6] {
         let scaled = at(sphere(0.5 * metres, Vec3::ZERO, 2000), 0.02 * metres);
-        let solid = build(&ProxyRequest { gaussians: &scaled, ground_m: -metres, cell_m: metres / 32.0, kind: ProxyKind::Voxel, seed: 1 }).unwrap();
+        let solid =
+            build(&ProxyRequest { gaussians: &scaled, ground_m: -metres, cell_m: metres / 32.0, kind: ProxyKind::Voxel, stands: true, seed: 1 })
+                .unwrap();
         assert!((solid.volume_total_m3 / metres.powi(3) / 0.55 - 1.0).abs() < 0.2, "{}", solid.volume_total_m3);
     }
 }
@@ -382,6 +384,9 @@ fn threads_that_no_stiffness_holds_are_no_matter_and_follow_what_they_hang_on() 
     let hung: Vec<u32> = draft.hung.iter().map(|h| h.0).collect();
     assert!((start as u32 + 20..start as u32 + 180).all(|i| hung.contains(&i)) && hung.iter().all(|&i| i as usize >= start - 5), "{hung:?}");
     assert!(draft.hung.iter().all(|h| h.1.distance(Vec3::new(0.035, 0.0, 0.13)) < 0.03), "{:?}", draft.hung[0]);
+    // What flows has no need to stand.
+    let poured = build(&ProxyRequest { gaussians: &pot, ground_m: 0.0, cell_m: 0.015, kind: ProxyKind::Voxel, stands: false, seed: 1 }).unwrap();
+    assert!(poured.hung.is_empty() && inside(&poured, Vec3::new(0.13, -0.3, 0.0), Vec3::ONE) > 10);
     // What stays can be made to stand, and a hull holds everything.
     let auto = young_auto(&full.stance, 1000.0);
     assert!(auto.local.iter().all(|&e| e <= 2e6));

@@ -96,6 +96,8 @@ enum Outcome {
 struct Tries {
     /// The window's margin is so many times what it should need.
     room: i32,
+    /// At most so many: less where the device has not that much.
+    room_most: i32,
     softenings: u32,
     trips: u32,
 }
@@ -134,7 +136,8 @@ impl Solver {
         }
         let mut seen = self.look()?;
         self.backup();
-        let mut tries = Tries { room: 1, softenings: 0, trips: 0 };
+        let calm = (seen.driven_m_s, seen.drift_m_s);
+        let mut tries = Tries { room: 1, room_most: ROOM_MOST, softenings: 0, trips: 0 };
         loop {
             let acceleration_m_s2 = self.set_surroundings();
             let pins_m_s = self.pin_speed_m_s();
@@ -162,8 +165,20 @@ impl Solver {
             self.ask_fields_at(until_s);
             let reach_m = (speed_m_s * (until_s - self.time_s)) as f32;
             let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + self.params.slack + 3) * tries.room;
-            self.fit_window(seen.low, if self.soft { seen.high } else { seen.low }, margin)?;
-            self.make_room(seen.blocks + seen.blocks / 8)?;
+            let high = if self.soft { seen.high } else { seen.low };
+            let fits = self.fit_window(seen.low, high, margin).and_then(|()| self.make_room(seen.blocks + seen.blocks / 8));
+            if let Err(error) = fits {
+                // What a failed try came to may ask for more room than there is; shorter substeps may never come to it.
+                if tries.room > 1 {
+                    (tries.room, tries.room_most) = (tries.room / 2, tries.room / 2);
+                } else if tries.trips > 0 {
+                    self.shorten_or(error, &mut tries)?;
+                    (seen.driven_m_s, seen.drift_m_s) = calm;
+                } else {
+                    return Err(error);
+                }
+                continue;
+            }
             tracing::debug!(time_s = self.time_s, until_s, dt_s = plan.dt_s, substeps = plan.substeps, speed_m_s, wary = ?self.wary, "segment");
             let (start, order) = (self.substep, self.current);
             let outcome = self.run(&plan, stop, tries.trips > 0)?;
@@ -172,10 +187,12 @@ impl Solver {
                 report.stopped = true;
                 return Ok(());
             };
-            // Room is no matter of the time step either.
+            // Room is no matter of the time step either, while there is any.
             if now.blocks > self.grid.as_ref().map_or(0, |g| g.capacity) {
                 self.roll_back(start, order);
-                self.make_room(now.blocks)?;
+                if let Err(error) = self.make_room(now.blocks) {
+                    self.shorten_or(error, &mut tries)?;
+                }
                 continue;
             }
             let travel_m = self.params.slack as f32 * self.settings.cell_m;
@@ -194,7 +211,7 @@ impl Solver {
             report.retries += 1;
             // How wide the window happens to be is no part of the state: leaving it asks for room and teaches nothing, so
             // that a run from a checkpoint, which makes its own, goes on to the same bits.
-            if now.window && now.nonfinite == 0 && tries.room < ROOM_MOST {
+            if now.window && now.nonfinite == 0 && tries.room < tries.room_most {
                 tries.room *= 2;
                 continue;
             }
@@ -216,6 +233,18 @@ impl Solver {
                 WayOn::None => return Err(SolverError::Unstable { time_s: self.time_s, dt_s: f64::from(plan.dt_s), reason }),
             }
         }
+    }
+
+    /// Halves the substeps of what spreads farther than there is room for: shorter ones may not come to that.
+    fn shorten_or(&mut self, error: SolverError, tries: &mut Tries) -> Result<(), SolverError> {
+        if self.wary.halvings >= HALVINGS {
+            return Err(error);
+        }
+        tracing::debug!(time_s = self.time_s, %error, "shorter substeps");
+        self.wary.trouble();
+        self.wary.halvings += 1;
+        tries.trips += 1;
+        Ok(())
     }
 
     /// What is done about a segment that failed. Room costs little; substeps half as long cost as many again, which

@@ -42,7 +42,7 @@ pub(super) fn scene(spec: &Spec, file_blake3: &str) -> String {
 
 /// The keys before motion, given what the scene resolved to.
 pub(super) fn still(spec: &Spec, scene: String, resolved: &Resolved) -> StillKeys {
-    let kinds: Vec<_> = spec.objects.iter().map(|o| o.proxy).collect();
+    let kinds: Vec<_> = spec.objects.iter().map(|o| (o.proxy, o.stands())).collect();
     let proxy = hash("proxy", &json!([proxy::VERSION, scene, kinds, resolved.cell_m, resolved.ground_m, spec.seed]));
     let bind = hash("bind", &json!([BIND_VERSION, proxy, spec.skin]));
     StillKeys { scene, proxy, bind }

@@ -7,7 +7,7 @@ use crate::spec::Spec;
 fn reads(stage: StageName) -> &'static [&'static str] {
     match stage {
         StageName::Scene => &["scene", "object.*.select", "object.*.name"],
-        StageName::Proxy => &["object.*.proxy", "solver", "world.ground.height_m", "seed"],
+        StageName::Proxy => &["object.*.proxy", "object.*.material", "object.*.part", "solver", "world.ground.height_m", "seed"],
         StageName::Bind => &["skin"],
         StageName::Simulate => &["time", "world", "object", "pin", "collider", "force", "event", "seed"],
         StageName::Picture => &["camera", "output", "time"],

@@ -226,6 +226,7 @@ fn build_solids(spec: &Spec, prepared: &Prepared, resolved: &Resolved) -> Result
             ground_m: resolved.ground_m as f32,
             cell_m: resolved.cell_m as f32,
             kind: object.proxy,
+            stands: object.stands(),
             seed: spec.seed.wrapping_add(index as u64),
         };
         proxy::build(&request).map_err(|source| EngineError::Proxy { object: object.name.clone(), source })

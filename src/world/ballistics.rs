@@ -6,7 +6,7 @@ use super::prepared::{NEAR_M, support_below};
 use super::spread;
 use crate::solver::velocity_change;
 use crate::spec::expression::{Inputs, Program};
-use crate::spec::{Event, FieldFacts, Force, Object, Spec};
+use crate::spec::{Event, FieldFacts, Force, Object, Pin, Spec, Until};
 use glam::DVec3;
 
 /// Seconds granted after the last landing or stop, for what ballistics do not know.
@@ -102,7 +102,8 @@ pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, ground_m: f64, u
     events.sort_by(|a, b| a.at_s.unwrap_or(until_s).total_cmp(&b.at_s.unwrap_or(until_s)));
     let mut path = Path { points: vec![body.at], ..Path::default() };
     let mut now = 0.0;
-    let ground = Ground { spec, restitution: restitution(thing, spec), facts, ground_m, gravity };
+    let pins = spec.pins.iter().filter(|p| p.object == thing.name).collect();
+    let ground = Ground { spec, restitution: restitution(thing, spec), facts, ground_m, gravity, start: body.at, pins };
     for (event, at_s) in events.into_iter().filter_map(|event| Some((event, event.at_s?))) {
         travel(&mut body, now, at_s.min(until_s), &ground, &drives, &mut path);
         now = at_s;
@@ -124,7 +125,7 @@ fn restitution(thing: &Object, spec: &Spec) -> f64 {
     thing.material.restitution().map_or(0.0, |own| own.max(spec.world.ground.restitution))
 }
 
-/// What it lands and slides on.
+/// What it lands and slides on, and what holds it.
 struct Ground<'a> {
     spec: &'a Spec,
     /// Share of its speed that it leaves with: what is soft keeps the rest in itself.
@@ -132,9 +133,25 @@ struct Ground<'a> {
     facts: &'a ObjectFacts,
     ground_m: f64,
     gravity: DVec3,
+    /// Its displacement at the start, from which pins lead it.
+    start: DVec3,
+    pins: Vec<&'a Pin>,
 }
 
 impl Ground<'_> {
+    /// Where a pin has it at a time; a part that is held holds the rest, as far as a picture goes.
+    fn held_at(&self, time_s: f64) -> Option<DVec3> {
+        let lasts = |pin: &&&Pin| pin.from_s <= time_s && if let Until::Time(to_s) = pin.to_s { time_s < to_s } else { true };
+        let pin = self.pins.iter().find(lasts)?;
+        let begin = [pin.from_s, 0.0, 0.0, 0.0];
+        let next = pin.path.iter().position(|point| point[0] > time_s);
+        let before = next.map_or(pin.path.last(), |next| next.checked_sub(1).map(|i| &pin.path[i])).unwrap_or(&begin);
+        let after = next.map_or(before, |next| &pin.path[next]);
+        let place = |point: &[f64; 4]| DVec3::new(point[1], point[2], point[3]);
+        let share = ((time_s - before[0]) / (after[0] - before[0]).max(1e-9)).clamp(0.0, 1.0);
+        Some(self.start + place(before).lerp(place(after), share))
+    }
+
     /// The least displacement along z at a displacement: its lowest point on the ground, or on the collider that its
     /// middle is over.
     fn floor(&self, at: DVec3) -> f64 {
@@ -151,6 +168,15 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Dri
     let brake = ground.spec.world.ground.friction.max(LEAST_FRICTION) * (-gravity.z).max(0.0) * step_s;
     let mut now = from_s;
     while now < to_s {
+        if let Some(at) = ground.held_at(now + step_s) {
+            if at != body.at {
+                path.rests_s = path.rests_s.max(now + step_s);
+            }
+            (body.at, body.velocity) = (at, DVec3::ZERO);
+            path.points.push(at);
+            now += step_s;
+            continue;
+        }
         let floor = ground.floor(body.at);
         let change = drives.change(body, now, step_s);
         body.velocity += change;
@@ -259,6 +285,26 @@ mod tests {
         spec.objects[0].velocity_m_s = [0.0, 2.0, 0.0];
         assert!((lowest(&spec) + 0.5).abs() < 1e-9);
         assert!(duration_s(&spec, &facts(), -0.5) > stays_s);
+    }
+
+    #[test]
+    fn what_is_held_stays_and_what_is_led_goes_its_way() {
+        use crate::spec::Region;
+        let mut spec = spec();
+        spec.objects[0].offset_m = [0.0, 0.0, 0.5];
+        let pin = Pin {
+            name: "hook".into(),
+            object: "vase".into(),
+            region: Region::Above(0.9),
+            from_s: 0.0,
+            to_s: Until::Time(2.0),
+            path: vec![[1.0, 0.4, 0.0, 0.0], [1.5, 0.4, 0.2, 0.0]],
+        };
+        spec.pins.push(pin);
+        let path = predict(&spec, 0, &facts()[0], 0.0, 4.0);
+        let at = |time_s: f64| path.points[(time_s / 0.01).round() as usize];
+        assert!((at(0.5) - DVec3::new(0.2, 0.0, 0.5)).length() < 0.01 && (at(1.9) - DVec3::new(0.4, 0.2, 0.5)).length() < 0.01);
+        assert!(path.points.last().is_some_and(|p| p.z.abs() < 1e-9), "let go, it falls");
     }
 
     #[test]

@@ -28,7 +28,7 @@ fn a_captured_thing_with_slender_stems_stays_as_it_stands() {
 #[test]
 fn a_captured_pot_with_a_stem_and_a_tendril_stays_as_it_stands() {
     let (gaussians, _) = pot_with_a_tendril();
-    let request = ProxyRequest { gaussians: &gaussians, ground_m: 0.0, cell_m: 0.02, kind: ProxyKind::Voxel, seed: 1 };
+    let request = ProxyRequest { gaussians: &gaussians, ground_m: 0.0, cell_m: 0.02, kind: ProxyKind::Voxel, stands: true, seed: 1 };
     let solid = proxy::build(&request).expect("a solid");
     let young = proxy::young_auto(&solid.stance, 1000.0).local;
     let n = solid.position_m.len();

@@ -80,6 +80,11 @@ fn plus_x() -> Axis {
 }
 
 impl Object {
+    /// Whether any of it stands by its own elasticity.
+    pub fn stands(&self) -> bool {
+        self.material.stands() || self.parts.iter().any(|part| part.material.stands())
+    }
+
     /// An elastic object of all Gaussians, at rest.
     pub fn new(name: &str) -> Object {
         Object {
