@@ -5,8 +5,8 @@ use super::core::Solver;
 use super::fields::Fields;
 use super::grid::GridBuffers;
 use super::obstacles;
+use super::retry::{Tries, WayOn};
 use super::types::{Advance, SolverError};
-use super::wary::HALVINGS;
 use super::watch::{Control, Watch};
 use crate::Stop;
 use crate::gpu::{Readback, Recording, Tier};
@@ -63,12 +63,8 @@ impl Plan {
 
 /// Two times closer than this are one.
 const SAME_TIME_S: f64 = 1e-9;
-/// A material is softened this often before the run is given up.
-const SOFTENINGS: u32 = 6;
 /// Bodies that fall fast through little may take substeps shorter than stiffness may: they cost little.
 const BODY_SHARE: f64 = 0.125;
-/// A segment's window gets so many times the room that it should need at most.
-const ROOM_MOST: i32 = 8;
 /// Cells that anything may travel in one segment.
 const SEGMENT_CELLS: f64 = 32.0;
 /// Sorting is amortised over at most so many substeps: runs of equal cells break up meanwhile.
@@ -90,27 +86,6 @@ pub(super) fn spans(from_s: f64, to_s: f64, time_s: f64) -> bool {
 enum Outcome {
     Done(Watch),
     Stopped,
-}
-
-/// How often one segment was tried.
-struct Tries {
-    /// The window's margin is so many times what it should need.
-    room: i32,
-    /// At most so many: less where the device has not that much.
-    room_most: i32,
-    softenings: u32,
-    trips: u32,
-}
-
-/// How a segment that failed is run again.
-enum WayOn {
-    /// With more room for something, or substeps for a higher speed.
-    Wider,
-    /// In substeps half as long.
-    Shorter,
-    /// With softer matter.
-    Softer,
-    None,
 }
 
 impl Solver {
@@ -137,7 +112,7 @@ impl Solver {
         let mut seen = self.look()?;
         self.backup();
         let calm = (seen.driven_m_s, seen.drift_m_s);
-        let mut tries = Tries { room: 1, room_most: ROOM_MOST, softenings: 0, trips: 0 };
+        let mut tries = Tries::default();
         loop {
             let acceleration_m_s2 = self.set_surroundings();
             let pins_m_s = self.pin_speed_m_s();
@@ -233,48 +208,6 @@ impl Solver {
                 WayOn::None => return Err(SolverError::Unstable { time_s: self.time_s, dt_s: f64::from(plan.dt_s), reason }),
             }
         }
-    }
-
-    /// Halves the substeps of what spreads farther than there is room for: shorter ones may not come to that.
-    fn shorten_or(&mut self, error: SolverError, tries: &mut Tries) -> Result<(), SolverError> {
-        if self.wary.halvings >= HALVINGS {
-            return Err(error);
-        }
-        tracing::debug!(time_s = self.time_s, %error, "shorter substeps");
-        self.wary.trouble();
-        self.wary.halvings += 1;
-        tries.trips += 1;
-        Ok(())
-    }
-
-    /// What is done about a segment that failed. Room costs little; substeps half as long cost as many again, which
-    /// is worth it while a frame's budget lasts; beyond that what cannot be resolved is softened, at the same cost.
-    fn way_on(&mut self, now: &Watch, plan: &Plan, faster: bool, tries: &mut Tries) -> Result<WayOn, SolverError> {
-        // Longer lists are no matter of the time step.
-        if now.crowded && self.lengthen_lists()? {
-            return Ok(WayOn::Wider);
-        }
-        // Nor are wider sums, where nothing else is wrong.
-        if now.overflow && self.wary.widen() {
-            self.set_wary(self.wary);
-            if f64::from(now.peak_speed_m_s * plan.dt_s) <= f64::from(self.settings.cell_m) {
-                return Ok(WayOn::Wider);
-            }
-        }
-        // Nor is it known yet whether substeps for the speed that things came to do.
-        if faster && tries.trips <= 2 {
-            return Ok(WayOn::Wider);
-        }
-        let shortest_s = budget::shortest_s(&self.settings);
-        let affordable = self.wary.halvings == 0 || 0.5 * f64::from(plan.dt_s) >= 0.5 * shortest_s;
-        Ok(match () {
-            _ if self.wary.halvings < HALVINGS && affordable => WayOn::Shorter,
-            _ if tries.softenings < SOFTENINGS => {
-                tries.softenings += 1;
-                WayOn::Softer
-            }
-            _ => WayOn::None,
-        })
     }
 
     /// Adds a segment that held.
@@ -499,16 +432,5 @@ impl Solver {
         recording.copy(&from.kinematics, &to.kinematics, bytes);
         recording.copy(&from.matter, &to.matter, bytes);
         self.gpu.submit(&recording);
-    }
-
-    /// Softens the suspect objects, or all where none stands out.
-    pub(super) fn soften(&mut self, suspects: u32, reason: &str) -> Result<(), SolverError> {
-        let mut states = self.states()?;
-        let suspect = |object: u32| suspects == 0 || suspects >> (object & 31) & 1 != 0;
-        let mut substances = self.laws.substances.clone();
-        self.softened.extend(budget::soften(&mut states, &mut substances, suspect, self.time_s, reason));
-        self.set_substances(&substances)?;
-        self.replace(states);
-        Ok(())
     }
 }

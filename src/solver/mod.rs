@@ -26,6 +26,7 @@ mod liquid;
 mod obstacles;
 mod prestress;
 mod record;
+mod retry;
 mod rigid;
 mod sph;
 mod state;

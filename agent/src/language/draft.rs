@@ -239,6 +239,11 @@ impl<'a> Draft<'a> {
         format!("{stem}{number}")
     }
 
+    /// The stem itself where it is not in use, else the first of stem1, stem2, … that is not.
+    pub fn plain_name(&self, stem: &str, used: impl Fn(&Spec, &str) -> bool) -> String {
+        if used(&self.spec, stem) { self.free_name(stem, used) } else { stem.to_owned() }
+    }
+
     /// Length of the run, seconds: given, resolved, or the shortest automatic one.
     pub fn duration_s(&self) -> f64 {
         match self.spec.time.duration_s {

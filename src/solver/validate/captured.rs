@@ -1,7 +1,7 @@
 //! What was captured standing still goes on standing still, and comes back to its shape.
 
 use super::Check;
-use super::bodies::block;
+use super::bodies::{block, keep};
 use crate::Stop;
 use crate::gpu::Gpu;
 use crate::solver::core::Solver;
@@ -26,17 +26,7 @@ pub(in crate::solver) fn stems(young_pa: f32) -> Particles {
         };
         pot || arm(1.0) || arm(-1.0)
     };
-    let mut body = block(Vec3::new(-0.4, -0.2, 0.0), Vec3::new(0.8, 0.4, 0.9), SPACING_M, young_pa, 0.3);
-    body.position_m.retain(|&p| inside(p));
-    let n = body.position_m.len();
-    body.velocity_m_s.truncate(n);
-    body.volume_m3.truncate(n);
-    body.density_kg_m3.truncate(n);
-    body.young_pa.truncate(n);
-    body.poisson.truncate(n);
-    body.substance.truncate(n);
-    body.object.truncate(n);
-    body
+    keep(&block(Vec3::new(-0.4, -0.2, 0.0), Vec3::new(0.8, 0.4, 0.9), SPACING_M, young_pa, 0.3), inside)
 }
 
 fn standing(gpu: &Gpu) -> Result<(Solver, Particles), SolverError> {

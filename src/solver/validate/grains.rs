@@ -1,6 +1,6 @@
 //! Sand that falls and comes to rest: V13 to V15.
 
-use super::bodies::{block, mean_of};
+use super::bodies::{block, keep, mean_of};
 use super::{Check, Plot};
 use crate::Stop;
 use crate::gpu::Gpu;
@@ -38,22 +38,12 @@ impl Column {
     fn particles(&self) -> Particles {
         let s = self.spacing_m;
         let width_m = if self.round { self.length_m } else { SLAB_CELLS * 2.0 * s };
-        let mut body = block(Vec3::ZERO, Vec3::new(self.length_m, width_m, self.height_m), s, 5e5, 0.3);
-        let out = |p: &Vec3| if self.round { p.truncate().length() } else { p.x };
+        let whole = block(Vec3::ZERO, Vec3::new(self.length_m, width_m, self.height_m), s, 5e5, 0.3);
+        let out = |p: Vec3| if self.round { p.truncate().length() } else { p.x };
         let cot = 1.0 / self.face_deg.to_radians().tan();
-        body.position_m.retain(|p| out(p) + p.z * cot < self.length_m);
-        let n = body.position_m.len();
-        body.density_kg_m3 = vec![1600.0; n];
-        body.substances = vec![Substance::Sand { friction_angle_deg: self.friction_angle_deg, cohesion_pa: 0.0 }];
-        Particles {
-            velocity_m_s: vec![Vec3::ZERO; n],
-            volume_m3: vec![s.powi(3); n],
-            young_pa: vec![5e5; n],
-            poisson: vec![0.3; n],
-            substance: vec![0; n],
-            object: vec![0; n],
-            ..body
-        }
+        let body = keep(&whole, |p| out(p) + p.z * cot < self.length_m);
+        let substances = vec![Substance::Sand { friction_angle_deg: self.friction_angle_deg, cohesion_pa: 0.0 }];
+        Particles { density_kg_m3: vec![1600.0; body.len()], substances, ..body }
     }
 
     fn settings(&self) -> Settings {

@@ -1,6 +1,6 @@
 //! Drops of smoothed particles without weight: V21 and V22.
 
-use super::bodies::pool;
+use super::bodies::{keep, pool};
 use super::{Check, Plot};
 use crate::Stop;
 use crate::gpu::Gpu;
@@ -21,18 +21,10 @@ fn drop(cells: f32, stretch: f32, viscosity_pa_s: f32) -> (Particles, f64) {
     let substance = Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m: TENSION_N_M };
     // Off the middle of a cell, as any drop is.
     let low_m = Vec3::splat(-radius_m - 2.0 * d) + Vec3::new(0.26, 0.14, 0.37) * d;
-    let mut all = pool(low_m, Vec3::splat(2.0 * radius_m + 4.0 * d), d, DENSITY_KG_M3, 1.0, substance);
-    all.position_m.retain(|x| x.length() < radius_m);
-    let n = all.position_m.len();
+    let mut all = keep(&pool(low_m, Vec3::splat(2.0 * radius_m + 4.0 * d), d, DENSITY_KG_M3, 1.0, substance), |x| x.length() < radius_m);
+    let n = all.len();
     let wide = stretch.sqrt().recip();
     all.position_m.iter_mut().for_each(|x| *x *= Vec3::new(wide, wide, stretch));
-    all.velocity_m_s.truncate(n);
-    all.volume_m3.truncate(n);
-    all.density_kg_m3.truncate(n);
-    all.young_pa.truncate(n);
-    all.poisson.truncate(n);
-    all.substance.truncate(n);
-    all.object.truncate(n);
     (all, (3.0 * n as f64 * f64::from(d).powi(3) / (4.0 * std::f64::consts::PI)).cbrt())
 }
 

@@ -50,11 +50,10 @@ pub fn lead(course: Course, clause: &mut Clause, draft: &mut Draft) -> Result<()
             [say::tidy(from_s + share * round_s), x, y, z]
         });
         let Portion { region, said, .. } = parts::portion(draft, object, part);
-        let pin = Pin { name: "course".to_owned(), object: name.clone(), region, from_s, to_s, path: path.collect() };
+        let path = path.collect();
         draft.spec.pins.retain(|p| !(p.object == name && p.name.starts_with("course")));
-        let taken = draft.spec.pins.iter().any(|p| p.name == pin.name);
-        let pin_name = if taken { draft.free_name("course", |spec, name| spec.pins.iter().any(|p| p.name == name)) } else { pin.name.clone() };
-        draft.spec.pins.push(Pin { name: pin_name, ..pin });
+        let pin = draft.plain_name("course", |spec, name| spec.pins.iter().any(|p| p.name == name));
+        draft.spec.pins.push(Pin { name: pin, object: name.clone(), region, from_s, to_s, path });
         let times = if rounds == 1 { "once".to_owned() } else { format!("{rounds} times") };
         draft.gloss.push(format!(
             "{said} of {name} is led along {} of {}, {times}, {} a round",

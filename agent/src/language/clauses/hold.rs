@@ -30,8 +30,7 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
         match same {
             Some(pin) => (pin.from_s, pin.to_s) = (from_s, to_s),
             None => {
-                let taken = |name: &str| draft.spec.pins.iter().any(|p| p.name == name);
-                let name = if taken(stem) { draft.free_name(stem, |spec, name| spec.pins.iter().any(|p| p.name == name)) } else { stem.to_owned() };
+                let name = draft.plain_name(stem, |spec, name| spec.pins.iter().any(|p| p.name == name));
                 draft.spec.pins.push(Pin { name, object: object.clone(), region, from_s, to_s, path: Vec::new() });
             }
         }

@@ -48,8 +48,12 @@ pub fn put(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     }
     for thing in things {
         let gap_m = say::tidy(length.unwrap_or(GAP_SIZES * draft.size_m(object)));
-        let collider =
-            Collider { name: free_name(draft, stem(thing)), shape: shape(thing, draft, object, &heading, gap_m), friction: 0.3, restitution: 0.0 };
+        let collider = Collider {
+            name: draft.plain_name(stem(thing), |spec, name| spec.colliders.iter().any(|c| c.name == name)),
+            shape: shape(thing, draft, object, &heading, gap_m),
+            friction: 0.3,
+            restitution: 0.0,
+        };
         let line = format!(
             "a {} stands {} off, {}{assumed} as {} sees it; it is not drawn",
             stem(thing),
@@ -92,7 +96,8 @@ pub fn remove(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
     clause.take_sense(&Sense::Negation);
     clause.take_sense(&sense);
     draft.spec.colliders.retain(|c| !gone.contains(&c.name));
-    draft.gloss.push(format!("{} is not there any more; its picture stays", say::list(&gone)));
+    let pictured = if sense == Sense::Ground { "; its picture stays" } else { "" };
+    draft.gloss.push(format!("{} is not there any more{pictured}", say::list(&gone)));
     Ok(true)
 }
 
@@ -115,11 +120,6 @@ fn stem(thing: Scenery) -> &'static str {
         Scenery::Ball => "ball",
         Scenery::Post => "post",
     }
-}
-
-fn free_name(draft: &Draft, stem: &str) -> String {
-    let taken = |name: &str| draft.spec.colliders.iter().any(|c| c.name == name);
-    if taken(stem) { draft.free_name(stem, |spec, name| spec.colliders.iter().any(|c| c.name == name)) } else { stem.to_owned() }
 }
 
 /// A thing whose near side is `gap_m` from the object's own, on what the object stands on.

@@ -1,0 +1,96 @@
+//! What is done about a segment that failed: more room, shorter substeps, softer matter, in the order of what they cost.
+
+use super::advance::Plan;
+use super::budget;
+use super::core::Solver;
+use super::types::SolverError;
+use super::wary::HALVINGS;
+use super::watch::Watch;
+
+/// A material is softened this often before the run is given up.
+const SOFTENINGS: u32 = 6;
+/// A segment's window gets so many times the room that it should need at most.
+const ROOM_MOST: i32 = 8;
+
+/// How often one segment was tried.
+pub(super) struct Tries {
+    /// The window's margin is so many times what it should need.
+    pub room: i32,
+    /// At most so many: less where the device has not that much.
+    pub room_most: i32,
+    softenings: u32,
+    /// Failures that more room did not mend.
+    pub trips: u32,
+}
+
+impl Default for Tries {
+    fn default() -> Tries {
+        Tries { room: 1, room_most: ROOM_MOST, softenings: 0, trips: 0 }
+    }
+}
+
+/// How a segment that failed is run again.
+pub(super) enum WayOn {
+    /// With more room for something, or substeps for a higher speed.
+    Wider,
+    /// In substeps half as long.
+    Shorter,
+    /// With softer matter.
+    Softer,
+    None,
+}
+
+impl Solver {
+    /// Halves the substeps of what spreads farther than there is room for: shorter ones may not come to that.
+    pub(super) fn shorten_or(&mut self, error: SolverError, tries: &mut Tries) -> Result<(), SolverError> {
+        if self.wary.halvings >= HALVINGS {
+            return Err(error);
+        }
+        tracing::debug!(time_s = self.time_s, %error, "shorter substeps");
+        self.wary.trouble();
+        self.wary.halvings += 1;
+        tries.trips += 1;
+        Ok(())
+    }
+
+    /// What is done about a segment that failed. Room costs little; substeps half as long cost as many again, which
+    /// is worth it while a frame's budget lasts; beyond that what cannot be resolved is softened, at the same cost.
+    pub(super) fn way_on(&mut self, now: &Watch, plan: &Plan, faster: bool, tries: &mut Tries) -> Result<WayOn, SolverError> {
+        // Longer lists are no matter of the time step.
+        if now.crowded && self.lengthen_lists()? {
+            return Ok(WayOn::Wider);
+        }
+        // Nor are wider sums, where nothing else is wrong.
+        if now.overflow && self.wary.widen() {
+            self.set_wary(self.wary);
+            if f64::from(now.peak_speed_m_s * plan.dt_s) <= f64::from(self.settings.cell_m) {
+                return Ok(WayOn::Wider);
+            }
+        }
+        // Nor is it known yet whether substeps for the speed that things came to do.
+        if faster && tries.trips <= 2 {
+            return Ok(WayOn::Wider);
+        }
+        let shortest_s = budget::shortest_s(&self.settings);
+        let affordable = self.wary.halvings == 0 || f64::from(plan.dt_s) >= shortest_s;
+        Ok(match () {
+            _ if self.wary.halvings < HALVINGS && affordable => WayOn::Shorter,
+            _ if tries.softenings < SOFTENINGS => {
+                tries.softenings += 1;
+                WayOn::Softer
+            }
+            _ => WayOn::None,
+        })
+    }
+
+    /// Softens the suspect objects, or all where none stands out.
+    pub(super) fn soften(&mut self, suspects: u32, reason: &str) -> Result<(), SolverError> {
+        let mut states = self.states()?;
+        let suspect = |object: u32| suspects == 0 || suspects >> (object & 31) & 1 != 0;
+        let mut substances = self.laws.substances.clone();
+        self.softened.extend(budget::soften(&mut states, &mut substances, suspect, self.time_s, reason));
+        self.set_substances(&substances)?;
+        self.replace(states);
+        Ok(())
+    }
+}
