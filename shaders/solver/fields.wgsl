@@ -94,6 +94,8 @@ fn largest_change(at: Here, object: u32) -> vec2<f32> {
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocation_id) lane: u32) {
     let n = params.count;
+    // A lane beyond the last particle looks at that one and counts for nothing: another writes it meanwhile.
+    let alive = id.x < n;
     let i = min(id.x, n - 1u);
     let tag = matter[3u * n + i];
     let own = captured[bitcast<u32>(tag.x)];
@@ -111,9 +113,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
         }
         return;
     }
-    let change = velocity_change(pull(here, object, id.x < n), substep.dt_s);
+    let change = velocity_change(pull(here, object, alive), substep.dt_s);
     let v = driven(here.v, change);
-    if (id.x < n) {
+    if (alive) {
         kinematics[n + i] = vec4<f32>(v, motion.w);
         if (!finite3(change) || distance(v, here.v + change) > 1e-3 * FIELD_SPEED) {
             atomicAdd(&tally.limited, 1u);
@@ -121,8 +123,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     }
     // The scale of the next substep's sums, and the watch, see the velocity that it begins with.
     let momentum = momentum_measure(position.w, v, read_affine(i));
-    let momentum_most = subgroupMax(bitcast<u32>(momentum) & 0x7fffffffu);
-    let speed_most = subgroupMax(bitcast<u32>(length(v)) & 0x7fffffffu);
+    let momentum_most = subgroupMax(select(0u, bitcast<u32>(momentum) & 0x7fffffffu, alive));
+    let speed_most = subgroupMax(select(0u, bitcast<u32>(length(v)) & 0x7fffffffu, alive));
     if (lane == 0u) {
         let slot = (substep.index + 1u) & 3u;
         if (momentum_most > atomicLoad(&control.momentum[slot])) {

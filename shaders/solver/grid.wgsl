@@ -44,6 +44,10 @@ fn weigh(node: u32, mass: f32) {
 fn settle(at: Node) {
     let node = at.index;
     let sum = sums[node];
+    // Before it is asked whether there is anything: a sum that wrapped looks like none.
+    if (any(abs(sum) > vec4<i32>(1 << 30))) {
+        atomicStore(&control.overflow, 1u);
+    }
     if (sum.w <= 0) {
         if (any(sum != vec4<i32>(0))) {
             sums[node] = vec4<i32>(0);
@@ -56,9 +60,6 @@ fn settle(at: Node) {
     let mark = marks[node];
     sums[node] = vec4<i32>(0);
     marks[node] = vec2<u32>(0u);
-    if (any(abs(sum) > vec4<i32>(1 << 30))) {
-        atomicStore(&control.overflow, 1u);
-    }
     let momentum_unit = momentum_units(substep.index, substep.lag);
     var v = vec3<f32>(sum.xyz) * (params.mass_units / momentum_unit) / f32(sum.w);
     let x = position_of(at);

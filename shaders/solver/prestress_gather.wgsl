@@ -84,7 +84,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     if (id.x < n) {
         write_motion(i, v, affine);
     }
-    let most = subgroupMax(bitcast<u32>(momentum_measure(position.w, v, affine)));
+    // A lane beyond the last particle saw that one while another wrote it, and counts for nothing.
+    let most = subgroupMax(select(0u, bitcast<u32>(momentum_measure(position.w, v, affine)), id.x < n));
     if (lane == 0u) {
         atomicMax(&control.momentum[(substep.index + 1u) & 3u], most);
     }

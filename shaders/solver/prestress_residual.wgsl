@@ -1,15 +1,5 @@
 // Prestress, on the grid: sets up a system. What force is left over, and what holds each node.
 
-struct Pin {
-    at: vec4<f32>,
-    shape: vec4<f32>,
-    low: vec4<f32>,
-    high: vec4<f32>,
-    // Pins that move begin where they were captured.
-    shift: vec4<f32>,
-    velocity: vec4<f32>,
-}
-
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
 @group(0) @binding(2) var<storage, read> colliders: array<Collider>;
@@ -69,12 +59,8 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
             if (bound.w == 0.0) {
                 bound = support(mark.x, x);
             }
-            for (var p = 0u; p < params.pin_count; p++) {
-                let held = touch(Collider(pins[p].at, pins[p].shape, vec4<f32>(0.0)), x).distance_m <= 0.0;
-                if (held && all(x >= pins[p].low.xyz) && all(x <= pins[p].high.xyz)) {
-                    bound.w = 2.0;
-                }
-            }
+            // Pins that move begin where they were captured.
+            bound.w = select(bound.w, 2.0, pinned(x).w > 0.0);
             weight = select(0.0, length(force) / mass, measured);
         } else if (bound.w == 1.0 && dot(force, bound.xyz) > RELEASE * weight * mass) {
             // A support only pushes.

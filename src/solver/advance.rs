@@ -6,7 +6,7 @@ use super::fields::Fields;
 use super::grid::GridBuffers;
 use super::obstacles;
 use super::retry::{Tries, WayOn};
-use super::types::{Advance, SolverError};
+use super::types::{Advance, PinRegion, Pose, SolverError};
 use super::watch::{Control, Watch};
 use crate::Stop;
 use crate::gpu::{Readback, Recording, Tier};
@@ -141,7 +141,7 @@ impl Solver {
             let reach_m = (speed_m_s * (until_s - self.time_s)) as f32;
             let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + self.params.slack + 3) * tries.room;
             let high = if self.soft { seen.high } else { seen.low };
-            let fits = self.fit_window(seen.low, high, margin).and_then(|()| self.make_room(seen.blocks + seen.blocks / 8));
+            let fits = self.fit_window(seen.low, high, margin).and_then(|()| self.make_room(seen.blocks, seen.blocks / 8));
             if let Err(error) = fits {
                 // What a failed try came to may ask for more room than there is; shorter substeps may never come to it.
                 if tries.room > 1 {
@@ -165,7 +165,7 @@ impl Solver {
             // Room is no matter of the time step either, while there is any.
             if now.blocks > self.grid.as_ref().map_or(0, |g| g.capacity) {
                 self.roll_back(start, order);
-                if let Err(error) = self.make_room(now.blocks) {
+                if let Err(error) = self.make_room(now.blocks, 0) {
                     self.shorten_or(error, &mut tries)?;
                 }
                 continue;
@@ -188,6 +188,10 @@ impl Solver {
             // that a run from a checkpoint, which makes its own, goes on to the same bits.
             if now.window && now.nonfinite == 0 && tries.room < tries.room_most {
                 tries.room *= 2;
+                continue;
+            }
+            // Nor is how long lists of neighbours happen to be.
+            if now.crowded && now.nonfinite == 0 && self.lengthen_lists()? {
                 continue;
             }
             self.wary.trouble();
@@ -263,7 +267,8 @@ impl Solver {
             }
         }
         let pins: Vec<_> = self.settings.pins.iter().filter(|p| self.in_force(p.from_s, p.to_s)).collect();
-        let records: Vec<_> = pins.iter().map(|p| obstacles::pin(p, self.settings.cell_m, self.time_s)).collect();
+        let pose = |p: &PinRegion| self.poses.get(p.object as usize).copied().unwrap_or(Pose::CAPTURED);
+        let records: Vec<_> = pins.iter().map(|p| obstacles::pin(p, &pose(p), self.settings.cell_m, self.time_s)).collect();
         self.params.pin_count = records.len() as u32;
         self.gpu.upload(&self.pins_buffer, &records);
         self.set_fields();
@@ -386,8 +391,12 @@ impl Solver {
             if watched && end < plan.substeps {
                 let so_far = self.gpu.read::<Control>(&self.control, 1)?.first().map(Control::watch);
                 let travel_m = self.params.slack as f32 * self.settings.cell_m;
-                if let Some(now) = so_far.filter(|now| now.went_wrong(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m)) {
-                    return Ok(Outcome::Done(now));
+                if so_far.is_some_and(|now| now.went_wrong(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m)) {
+                    // Which object it is shows in the state.
+                    let mut recording = Recording::default();
+                    self.record_measure(&mut recording);
+                    self.gpu.submit(&recording);
+                    return Ok(Outcome::Done(self.read_watch()?));
                 }
             }
             step = end;

@@ -172,7 +172,7 @@ impl Solver {
         self.fit_window(seen.low, seen.high, 4 + (DROP_M / self.settings.cell_m) as i32)?;
         if fresh {
             // Nobody watches: what splashes finds room.
-            self.make_room(4 * self.grid.as_ref().map_or(0, |g| g.capacity))?;
+            self.make_room(4 * self.grid.as_ref().map_or(0, |g| g.capacity), 0)?;
         }
         self.start_segment();
         Ok(plan)

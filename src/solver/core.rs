@@ -14,7 +14,7 @@ use super::rigid::{self, Rigid};
 use super::sph::Sph;
 use super::state::{self, ParticleState, StateBuffers};
 use super::transfer::Transfers;
-use super::types::{Particles, Placement, Settings, Softened, SolverError};
+use super::types::{Particles, Placement, Pose, Settings, Softened, SolverError};
 use super::volume::VolumePasses;
 use super::wary::{self, Wary};
 use super::watch::{Control, Watch};
@@ -86,6 +86,8 @@ pub struct Solver {
     /// Of what is nearly incompressible, where anything is.
     pub(super) volume: Option<VolumePasses>,
     pub(super) object_count: u32,
+    /// Where each object started; pins go along.
+    pub(super) poses: Vec<Pose>,
     /// Contact between objects, where there are several.
     pub(super) encounter: Option<Encounter>,
     pub(super) control: wgpu::Buffer,
@@ -165,6 +167,7 @@ impl Solver {
             pins_buffer: gpu.storage::<PinRecord>("solver.pins", settings.pins.len().max(1))?,
             objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,
             object_count,
+            poses: vec![Pose::CAPTURED; object_count as usize],
             encounter: Encounter::new(gpu, &settings, &states, &particles.substances, object_count)?,
             laws: Laws::new(gpu)?,
             liquid: None,
@@ -242,7 +245,7 @@ impl Solver {
         let spin = placement.spin_rad_s;
         // [spin] x, so that v = velocity + spin x (x - centre) has this gradient.
         let cross = Mat3::from_cols(Vec3::new(0.0, spin.z, -spin.y), Vec3::new(-spin.z, 0.0, spin.x), Vec3::new(spin.y, -spin.x, 0.0));
-        let still = placement.rotation.is_near_identity() && placement.offset_m == Vec3::ZERO;
+        let still = placement.is_captured();
         let mut moved = Vec::new();
         self.edit(|s| {
             moved.push(!still && s.object() == object);
@@ -257,13 +260,16 @@ impl Solver {
             s.set_affine(cross * s.mass_kg);
         })?;
         self.edit_shown(|i, g| if moved[i] { turn * g } else { g })?;
+        if let Some(pose) = self.poses.get_mut(object as usize) {
+            *pose = Pose::of(placement);
+        }
         self.rigid.iter().try_for_each(|r| r.place(&self.gpu, object, placement))?;
         Ok(way_out)
     }
 
     /// How much further an object has to go that is moved behind a surface.
     fn way_out(&self, object: u32, turn: Mat3, placement: &Placement) -> Result<Vec3, SolverError> {
-        if placement.rotation.is_near_identity() && placement.offset_m == Vec3::ZERO {
+        if placement.is_captured() {
             return Ok(Vec3::ZERO);
         }
         let goes_to = |s: &ParticleState| turn * (s.position_m - placement.centre_m) + placement.centre_m + placement.offset_m;

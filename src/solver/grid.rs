@@ -239,19 +239,20 @@ impl Solver {
             self.new_grid(capacity.unwrap_or(0), (spread + spread / 4).min(allowed) as usize)?;
             if capacity.is_none() && self.soft {
                 let blocks = self.count_blocks()?;
-                self.make_room(blocks)?;
+                self.make_room(blocks, 0)?;
             }
         }
         Ok(())
     }
 
-    /// Makes room for so many blocks, and some more to come, where there is none yet.
-    pub(super) fn make_room(&mut self, blocks: usize) -> Result<(), SolverError> {
+    /// Makes room for so many blocks, and some more to come, where there is none yet; for `spare` more where the device has it.
+    pub(super) fn make_room(&mut self, blocks: usize, spare: usize) -> Result<(), SolverError> {
         let Some((capacity, spread)) = self.grid.as_ref().map(|g| (g.capacity, g.spread)) else { return Ok(()) };
+        let allowed = allowed_blocks(&self.gpu, self.grid_kind());
+        let blocks = blocks.max((blocks + spare).min(allowed as usize));
         if blocks <= capacity {
             return Ok(());
         }
-        let allowed = allowed_blocks(&self.gpu, self.grid_kind());
         if let (Some(window), true) = (self.window, blocks as u64 > allowed) {
             return Err(self.too_wide(window, blocks as u64, allowed));
         }

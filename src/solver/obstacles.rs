@@ -1,6 +1,6 @@
 //! Static colliders and pins as the kernels read them, and the same geometry on the CPU.
 
-use super::types::{PinRegion, Settings};
+use super::types::{PinRegion, Pose, Settings};
 use crate::spec::ColliderShape;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -25,8 +25,11 @@ pub(super) struct PinRecord {
     pub shape: [f32; 4],
     pub low: [f32; 4],
     pub high: [f32; 4],
-    /// How far it has been taken at the start of the segment, and its velocity.
+    /// Where `centre` of the captured pose is at the start of the segment, how the object was turned about it (columns), and
+    /// the pin's velocity.
     pub shift: [f32; 4],
+    pub centre: [f32; 4],
+    pub turn: [[f32; 4]; 3],
     pub velocity: [f32; 4],
 }
 
@@ -54,7 +57,7 @@ pub(super) fn colliders(settings: &Settings) -> Vec<ColliderRecord> {
 /// A pin holds the nodes up to half a cell around its shape, so that it holds what is in it, and at
 /// least one layer; around the object's box there is room for the nodes that its outermost particles
 /// reach.
-pub(super) fn pin(region: &PinRegion, cell_m: f32, time_s: f64) -> PinRecord {
+pub(super) fn pin(region: &PinRegion, pose: &Pose, cell_m: f32, time_s: f64) -> PinRecord {
     let (at, shape) = geometry(&region.shape, 0.5 * cell_m);
     let room = Vec3::splat(2.0 * cell_m);
     // A hair later, so that a path's corner counts as passed.
@@ -64,7 +67,9 @@ pub(super) fn pin(region: &PinRegion, cell_m: f32, time_s: f64) -> PinRecord {
         shape,
         low: (region.low_m - room).extend(0.0).into(),
         high: (region.high_m + room).extend(0.0).into(),
-        shift: shift.as_vec3().extend(0.0).into(),
+        shift: (shift.as_vec3() + Vec3::from_slice(&pose.start_m)).extend(0.0).into(),
+        centre: pose.centre_m,
+        turn: pose.turn,
         velocity: velocity.as_vec3().extend(0.0).into(),
     }
 }

@@ -68,7 +68,7 @@ passes! {
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;
     kick: ["particle", "particle_write", "kick_of", "kick"] [Read, Write, Read] KICK;
     prestress_gather: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;
-    prestress_residual: ["control", "substep", "contact", "node", "prestress", "prestress_sum", "prestress_residual"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Write] SUBSTEP;
+    prestress_residual: ["control", "substep", "contact", "node", "pin", "prestress", "prestress_sum", "prestress_residual"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Write] SUBSTEP;
     prestress_product: ["control", "substep", "prestress", "prestress_sum", "prestress_product"] [Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     prestress_control: ["substep", "prestress", "prestress_sum", "prestress_control"] [Read, Read, Read, Write] SUBSTEP;
     prestress_update: ["substep", "prestress", "prestress_sum", "prestress_update"] [Read, Read, Read, Write, Write, Write] SUBSTEP;

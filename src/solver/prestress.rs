@@ -296,7 +296,7 @@ impl Solver {
             if active <= grid.capacity {
                 break (grid, active);
             }
-            self.make_room(active)?;
+            self.make_room(active, 0)?;
         };
         self.current = 1 - self.current;
         let nodes = self.gpu.storage::<[f32; 4]>("solver.prestress_nodes", VECTORS * 64 * active)?;

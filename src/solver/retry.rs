@@ -56,11 +56,7 @@ impl Solver {
     /// What is done about a segment that failed. Room costs little; substeps half as long cost as many again, which
     /// is worth it while a frame's budget lasts; beyond that what cannot be resolved is softened, at the same cost.
     pub(super) fn way_on(&mut self, now: &Watch, plan: &Plan, faster: bool, tries: &mut Tries) -> Result<WayOn, SolverError> {
-        // Longer lists are no matter of the time step.
-        if now.crowded && self.lengthen_lists()? {
-            return Ok(WayOn::Wider);
-        }
-        // Nor are wider sums, where nothing else is wrong.
+        // Wider sums are no matter of the time step, where nothing else is wrong.
         if now.overflow && self.wary.widen() {
             self.set_wary(self.wary);
             if f64::from(now.peak_speed_m_s * plan.dt_s) <= f64::from(self.settings.cell_m) {

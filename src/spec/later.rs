@@ -12,8 +12,7 @@ pub(super) fn all() -> impl Iterator<Item = (&'static str, String)> {
 }
 
 /// Keys to come: where, which, what they mean.
-const KEYS: &[(&str, &str, &str)] =
-    &[("", "look", "looks that change over time"), ("pin", "path", "pins that move along a path"), ("event", "shatter", "shattering")];
+const KEYS: &[(&str, &str, &str)] = &[("", "look", "looks that change over time"), ("event", "shatter", "shattering")];
 
 /// Words to come: where, which, what they mean.
 const WORDS: &[(&str, &str, &str)] = &[

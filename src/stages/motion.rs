@@ -94,7 +94,8 @@ impl<'a> Motion<'a> {
                 }
                 None => {
                     self.wake(before.take(), segment, &mut delivery, sink, stop)?;
-                    self.played.stopped = self.simulate(segment, &mut delivery, sink, stop)?;
+                    // A stress that was not found to its end is no state to go on from.
+                    self.played.stopped = stop.raised() || self.simulate(segment, &mut delivery, sink, stop)?;
                 }
             }
             self.played.stopped |= stop.raised();

@@ -17,7 +17,9 @@ use super::Resolved;
 pub struct World {
     gpu: Gpu,
     solver: Solver,
+    /// In the order of their times, and how many of them have happened.
     events: Vec<TimedEvent>,
+    happened: usize,
     /// Events that wait for an impact, in the spec's order.
     waiting: Vec<Waiting>,
     /// Piece of its object that each particle belongs to, and the particles of each object.
@@ -76,6 +78,7 @@ impl World {
             gpu: gpu.clone(),
             solver,
             events,
+            happened: 0,
             waiting: waiting.into_iter().map(Waiting::new).collect(),
             piece: matter.piece.clone(),
             ranges: matter.bodies.ranges.clone(),
@@ -129,14 +132,14 @@ impl World {
 
     /// Goes on to the next frame: cut at each event on the way, which takes effect at that boundary.
     pub fn step_frame(&mut self, stop: &Stop) -> Result<Step, SolverError> {
-        let (from_s, to_s) = (self.time_s(self.frame), self.time_s(self.frame + 1));
-        let due: Vec<TimedEvent> = self.events.iter().filter(|e| e.at_s >= from_s && e.at_s < to_s).cloned().collect();
+        let to_s = self.time_s(self.frame + 1);
         let mut step = Step { frame: self.frame, advance: Vec::new(), fired: Vec::new(), stopped: false };
-        for event in due {
-            if event.at_s > from_s && !self.go(event.at_s, stop, &mut step)? {
+        while let Some(event) = self.events.get(self.happened).filter(|e| e.at_s < to_s).cloned() {
+            if event.at_s > self.solver.time_s() && !self.go(event.at_s, stop, &mut step)? {
                 return Ok(Step { stopped: true, ..step });
             }
             self.apply(&event)?;
+            self.happened += 1;
         }
         if !self.go(to_s, stop, &mut step)? {
             return Ok(Step { stopped: true, ..step });
@@ -278,7 +281,8 @@ impl World {
         self.course = self.start.clone();
         // What happens at the frame itself is still to come. The state of the captured pose is that of any events.
         let until_s = self.time_s(frame);
-        let mut past: Vec<TimedEvent> = self.events.iter().filter(|event| event.at_s < until_s).cloned().collect();
+        self.happened = self.events.partition_point(|event| event.at_s < until_s);
+        let mut past = self.events[..self.happened].to_vec();
         if frame > 0 {
             if states.len() != self.waiting.len() {
                 return Err(refuse(format!("{} events that wait, of {}", states.len(), self.waiting.len())));

@@ -58,7 +58,7 @@ fn released_s(spec: &Spec, pin: &Pin) -> f64 {
     events.filter_map(|e| e.at_s).filter(|at_s| *at_s > pin.from_s).fold(f64::INFINITY, f64::min)
 }
 
-/// A region of an object as a shape within the object's captured bounds.
+/// A region of an object as a shape within the object's captured bounds; it goes with the object to where that starts.
 fn pin(pin: &Pin, released_s: f64, matter: &Matter, object: usize) -> PinRegion {
     let (low, high) = bounds(&matter.particles.position_m[matter.bodies.ranges[object].clone()]);
     let level = |share: f64| f64::from(low.z) + share * f64::from(high.z - low.z);
@@ -76,5 +76,13 @@ fn pin(pin: &Pin, released_s: f64, matter: &Matter, object: usize) -> PinRegion 
         Region::Sphere(shape) => ColliderShape::Sphere(shape),
         Region::HalfSpace(PlaneShape { point_m, normal }) => ColliderShape::Plane(PlaneShape { point_m, normal }),
     };
-    PinRegion { shape, low_m: low, high_m: high, from_s: pin.from_s, to_s: end_s(pin.to_s).min(released_s), path: pin.path.clone() }
+    PinRegion {
+        object: object as u32,
+        shape,
+        low_m: low,
+        high_m: high,
+        from_s: pin.from_s,
+        to_s: end_s(pin.to_s).min(released_s),
+        path: pin.path.clone(),
+    }
 }

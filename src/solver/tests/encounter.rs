@@ -82,14 +82,14 @@ fn layers_meet_as_their_twins_do() {
     settings.ground = Some(Plane { height_m: 0.0, friction: 0.4, restitution: 0.0 });
     let top = PlaneShape { point_m: [0.0, 0.0, 0.12], normal: [0.0, 0.0, -1.0] };
     let (low_m, high_m) = (Vec3::ZERO, Vec3::splat(0.15));
-    settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0, path: Vec::new() }];
+    settings.pins = vec![PinRegion { object: 0, shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0, path: Vec::new() }];
     let mut solver = solver(settings, &bodies.into_iter().reduce(joined).expect("three"));
     let seen = solver.look().expect("a look");
     solver.fit_window(seen.low, seen.high, 4).expect("a window");
     solver.set_surroundings();
     solver.start_segment();
     let states = solver.states().expect("states");
-    let (colliders, pins) = (obstacles::colliders(&solver.settings), [obstacles::pin(&solver.settings.pins[0], CELL_M, 0.0)]);
+    let (colliders, pins) = (obstacles::colliders(&solver.settings), [obstacles::pin(&solver.settings.pins[0], &solver.poses[0], CELL_M, 0.0)]);
     let substances = solver.laws.substances.clone();
     let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &[Vec3::ZERO; 3], substances: &substances };
     let dt_s = 4e-4;
@@ -239,6 +239,7 @@ fn what_is_thrown_at_a_held_plate_stays_before_it() {
     let mut settings = weightless();
     let below = PlaneShape { point_m: [0.0, 0.0, 0.04], normal: [0.0, 0.0, 1.0] };
     settings.pins = vec![PinRegion {
+        object: 0,
         shape: ColliderShape::Plane(below),
         low_m: Vec3::ZERO,
         high_m: Vec3::new(0.3, 0.3, 0.1),

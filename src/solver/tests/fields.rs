@@ -402,7 +402,15 @@ fn what_is_no_number_is_counted_and_what_is_too_fast_is_held() {
 fn a_pin_takes_its_part_along_a_path() {
     let plane = PlaneShape { point_m: [0.0, 0.0, -0.02], normal: [0.0, 0.0, 1.0] };
     let path = vec![[0.1, 0.05, 0.0, 0.0], [0.2, 0.05, 0.1, 0.0]];
-    let pin = PinRegion { shape: ColliderShape::Plane(plane), low_m: Vec3::splat(-0.05), high_m: Vec3::splat(0.05), from_s: 0.0, to_s: 1.0, path };
+    let pin = PinRegion {
+        object: 0,
+        shape: ColliderShape::Plane(plane),
+        low_m: Vec3::splat(-0.05),
+        high_m: Vec3::splat(0.05),
+        from_s: 0.0,
+        to_s: 1.0,
+        path,
+    };
     let particles = small(Vec3::ZERO);
     let mut solver = solver(Settings { pins: vec![pin], ..driven_by(&[]) }, &particles);
     let held: Vec<usize> = (0..particles.len()).filter(|&i| particles.position_m[i].z < -0.03).collect();

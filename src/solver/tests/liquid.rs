@@ -36,7 +36,7 @@ fn density_tension_and_walls_follow_the_twins() {
     let thick = Substance::Liquid { viscosity_pa_s: 400.0, surface_tension_n_m: 1.0 };
     let (mut solver, mut states) = scene_of([thin, thick]);
     let colliders = obstacles::colliders(&solver.settings);
-    let pins = [obstacles::pin(&solver.settings.pins[0], CELL_M, 0.0)];
+    let pins = [obstacles::pin(&solver.settings.pins[0], &solver.poses[0], CELL_M, 0.0)];
     let substances = solver.laws.substances.clone();
     let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &[Vec3::ZERO; 2], substances: &substances };
     let fields = Fields::new(&states, &around, &active_nodes(&solver, &states));

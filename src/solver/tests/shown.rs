@@ -6,7 +6,7 @@ use crate::Stop;
 use crate::gpu::{Gpu, Recording};
 use crate::solver::substance::Substance;
 use crate::solver::validate::append;
-use crate::solver::{Placement, Plane, Settings, Solver, SolverError};
+use crate::solver::{Placement, Plane, Settings, Solver};
 use glam::{Mat3, Quat, Vec3};
 
 /// G and the volume ratio of each particle, as a frame has them.
@@ -113,10 +113,7 @@ fn matter_of_any_law_thrown_hard_at_the_ground_stays_finite() {
     settings.ground = Some(Plane { height_m: 0.0, friction: 0.3, restitution: 0.0 });
     let mut solver = side_by_side(&laws, settings);
     solver.edit(|s| s.velocity_m_s = Vec3::new(3.0, 0.0, -12.0)).expect("an edit");
-    match solver.advance(0.06, &Stop::default()) {
-        Ok(report) => assert!(report.substeps > 0),
-        Err(error) => assert!(matches!(error, SolverError::Unstable { .. }), "{error}"),
-    }
+    solver.advance(0.06, &Stop::default()).expect("an advance");
     for (s, (g, _)) in solver.states().expect("states").iter().zip(frame(&solver)) {
         let substance = &laws[s.substance()];
         assert!(s.position_m.is_finite() && s.velocity_m_s.is_finite() && s.f().is_finite() && s.history.is_finite(), "{substance:?}");

@@ -314,10 +314,16 @@ fn crowded_lists_grow_and_overlapping_bodies_part_without_flying_off() {
         particles.substance.extend(other.substance);
         particles.object.extend(other.object);
     }
-    let settings = Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) };
-    let mut solver = solver(settings, &particles);
-    let report = solver.advance(0.5, &Stop::default()).expect("an advance");
+    let new = || solver(Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) }, &particles);
+    let (mut solver, mut resumed) = (new(), new());
+    let report = solver.advance(0.02, &Stop::default()).expect("an advance");
     assert!(report.retries > 0, "lists of 64 are too short for three bodies in one place");
+    // Lists as short as at the start: it finds them too short again, and nothing else changes.
+    resumed.restore(&solver.checkpoint().expect("a checkpoint")).expect("a state");
+    let (without, with) = (solver.advance(0.04, &Stop::default()).expect("an advance"), resumed.advance(0.04, &Stop::default()).expect("an advance"));
+    assert!(without.retries == 0 && with.retries > 0, "{without:?}, {with:?}");
+    assert!(solver.checkpoint().expect("a checkpoint") == resumed.checkpoint().expect("a checkpoint"), "other bits");
+    solver.advance(0.5, &Stop::default()).expect("an advance");
     let states = solver.states().expect("states");
     let fastest = states.iter().map(|s| s.velocity_m_s.length()).fold(0.0, f32::max);
     assert!(fastest < 1.0, "{fastest} m/s");

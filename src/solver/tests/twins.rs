@@ -62,7 +62,8 @@ pub(super) fn scene_on(gpu: &Gpu, substances: [Substance; 2]) -> (Solver, Vec<Pa
     ];
     let top = PlaneShape { point_m: [0.0, 0.0, 0.16], normal: [0.0, 0.0, -1.0] };
     let (low_m, high_m) = (Vec3::ZERO, Vec3::splat(0.2));
-    settings.pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0, path: vec![[0.5, 0.1, -0.2, 0.3]] }];
+    settings.pins =
+        vec![PinRegion { object: 0, shape: ColliderShape::Plane(top), low_m, high_m, from_s: 0.0, to_s: 1.0, path: vec![[0.5, 0.1, -0.2, 0.3]] }];
     settings.forces = vec![crate::solver::ObjectForce { object: 1, from_s: 0.0, to_s: 1.0, acceleration_m_s2: Vec3::new(3.0, -2.0, 1.0) }];
     // All on one layer of the grid: `encounter` has the others.
     settings.glued = true;
@@ -217,7 +218,7 @@ fn follows_the_twins(substances: [Substance; 2]) {
 pub(super) fn follows_the_twins_on(device: &Gpu, substances: [Substance; 2]) {
     let (mut solver, mut states) = scene_on(device, substances);
     let colliders = obstacles::colliders(&solver.settings);
-    let pins = [obstacles::pin(&solver.settings.pins[0], CELL_M, 0.0)];
+    let pins = [obstacles::pin(&solver.settings.pins[0], &solver.poses[0], CELL_M, 0.0)];
     let accelerations = [Vec3::ZERO, Vec3::new(3.0, -2.0, 1.0)];
     let substances = solver.laws.substances.clone();
     let shown_before: Vec<[[f32; 4]; 3]> =

@@ -158,7 +158,9 @@ pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32, since_s: f32) {
 }
 
 pub fn pinned(pin: &PinRecord, x: Vec3, since_s: f32) -> bool {
-    let x = x - (Vec3::from_slice(&pin.shift) + Vec3::from_slice(&pin.velocity) * since_s);
+    let way = x - (Vec3::from_slice(&pin.shift) + Vec3::from_slice(&pin.velocity) * since_s);
+    let turn = Mat3::from_cols_array_2d(&pin.turn.map(|[x, y, z, _]| [x, y, z]));
+    let x = turn.inverse() * way + Vec3::from_slice(&pin.centre);
     let shape = ColliderRecord { at: pin.at, shape: pin.shape, surface: [0.0; 4] };
     x.cmpge(Vec3::from_slice(&pin.low)).all() && x.cmple(Vec3::from_slice(&pin.high)).all() && shape.touch(x).distance_m <= 0.0
 }

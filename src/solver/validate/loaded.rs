@@ -22,7 +22,7 @@ const CLAMP_M: f32 = 0.5 * CELL_M;
 fn clamp(particles: &Particles, normal: Vec3) -> PinRegion {
     let (low_m, high_m) = particles.position_m.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
     let plane = PlaneShape { point_m: (normal * CLAMP_M).as_dvec3().into(), normal: normal.as_dvec3().into() };
-    PinRegion { shape: ColliderShape::Plane(plane), low_m, high_m, from_s: 0.0, to_s: f64::INFINITY, path: Vec::new() }
+    PinRegion { object: 0, shape: ColliderShape::Plane(plane), low_m, high_m, from_s: 0.0, to_s: f64::INFINITY, path: Vec::new() }
 }
 
 /// Mean of a displacement over `span_s`, in `samples` steps. A load put on at once makes a body swing

@@ -64,8 +64,15 @@ impl Bar {
         let mut settings = Settings { gravity_m_s2: Vec3::ZERO, glued: true, ..Settings::new(CELL_M) };
         let clamp = PlaneShape { point_m: [f64::from(first), 0.0, 0.0], normal: [1.0, 0.0, 0.0] };
         let room = Vec3::splat(1.0);
-        settings.pins =
-            vec![PinRegion { shape: ColliderShape::Plane(clamp), low_m: -room, high_m: room, from_s: 0.0, to_s: f64::INFINITY, path: Vec::new() }];
+        settings.pins = vec![PinRegion {
+            object: 0,
+            shape: ColliderShape::Plane(clamp),
+            low_m: -room,
+            high_m: room,
+            from_s: 0.0,
+            to_s: f64::INFINITY,
+            path: Vec::new(),
+        }];
         let mass_kg = f64::from(WEIGHT_KG_M3) * f64::from(EDGE_M).powi(3);
         let full = traction_pa * f64::from(EDGE_M).powi(2) / mass_kg;
         settings.forces = (0..STEPS)

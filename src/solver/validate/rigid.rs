@@ -181,7 +181,8 @@ pub(super) fn joint(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         *v = Vec3::X * (0.45 - p.z).max(0.0);
     }
     let top = PlaneShape { point_m: [0.0, 0.0, 0.45], normal: [0.0, 0.0, -1.0] };
-    let pins = vec![PinRegion { shape: ColliderShape::Plane(top), low_m: Vec3::ZERO, high_m: size_m, from_s: 0.0, to_s: 10.0, path: Vec::new() }];
+    let pins =
+        vec![PinRegion { object: 0, shape: ColliderShape::Plane(top), low_m: Vec3::ZERO, high_m: size_m, from_s: 0.0, to_s: 10.0, path: Vec::new() }];
     let mut solver = Solver::new(gpu, Settings { pins, ..Settings::new(CELL_M) }, &particles)?;
     let start = solver.motions()?.swap_remove(0);
     let joint: Vec<usize> = (0..particles.len()).filter(|&i| (particles.position_m[i].z - 0.1625).abs() < 0.01).collect();

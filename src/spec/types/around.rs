@@ -18,7 +18,7 @@ pub struct Pin {
     pub name: String,
     /// The object it holds.
     pub object: String,
-    /// Which part.
+    /// Which part: of the captured pose, wherever the object starts.
     pub region: Region,
     /// From when.
     #[serde(default)]

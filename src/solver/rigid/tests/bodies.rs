@@ -131,8 +131,15 @@ fn runs_repeat_and_resume_to_the_bit_and_pins_hold() {
     assert!(end == third.checkpoint().expect("a checkpoint"), "a resumed run differs");
 
     let pin = BoxShape { centre_m: [0.05, 0.05, 0.12], size_m: [0.2, 0.2, 0.02] };
-    let pins =
-        vec![PinRegion { shape: ColliderShape::Box(pin), low_m: Vec3::ZERO, high_m: Vec3::splat(0.2), from_s: 0.0, to_s: 0.1, path: Vec::new() }];
+    let pins = vec![PinRegion {
+        object: 0,
+        shape: ColliderShape::Box(pin),
+        low_m: Vec3::ZERO,
+        high_m: Vec3::splat(0.2),
+        from_s: 0.0,
+        to_s: 0.1,
+        path: Vec::new(),
+    }];
     let mut held = solver(Settings { pins, ..Settings::new(CELL_M) }, &rigid(block(Vec3::splat(0.02), Vec3::splat(0.1), 0.025, 1e5, 0.3), 0.3, 0.0));
     advance(&mut held, 0.1);
     assert!((centre(&bodies_of(&held)[0]) - Vec3::splat(0.07)).length() < 1e-6);

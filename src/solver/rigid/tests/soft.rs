@@ -36,7 +36,7 @@ fn what_a_pin_sets_off_at_once_fits_the_first_sums() {
     let particles = with_rigid_part(block(Vec3::ZERO, size, 0.025, 5e4, 0.3), |p| p.z < 0.15);
     let foot = BoxShape { centre_m: [0.05, 0.05, 0.05], size_m: [0.2, 0.2, 0.1] };
     let path = vec![[1.0, 1.0, 0.0, 0.0]];
-    let pins = vec![PinRegion { shape: ColliderShape::Box(foot), low_m: Vec3::ZERO, high_m: size, from_s: 0.0, to_s: 1.0, path }];
+    let pins = vec![PinRegion { object: 0, shape: ColliderShape::Box(foot), low_m: Vec3::ZERO, high_m: size, from_s: 0.0, to_s: 1.0, path }];
     let mut solver = solver(Settings { pins, ..floating() }, &particles);
     let report = solver.advance(0.02, &Stop::default()).expect("an advance");
     assert_eq!((report.retries, report.softened.len()), (0, 0), "{report:?}");
