@@ -54,7 +54,7 @@ fn meet(sums: ptr<function, Pull>, me: Own, j: u32, slope: f32, liquid: bool) {
     let alike = liquid && me.liquid;
     let along = y / max(q, 1e-6);
     let approach = dot(me.v - motion[j].xyz, y);
-    let viscosity = me.viscous * couple_viscosity(me.nature.z, its.z) + eddies(approach / max(q, 1e-6)) * (2.0 / (me.nature.x + its.x));
+    let viscosity = me.viscous * couple_viscosity(me.nature.z, its.z) + eddies(approach / max(q, 1e-6), substep.dt_s) * (2.0 / (me.nature.x + its.x));
     var braking = viscosity;
     var tension = WETTING * (me.nature.y + its.y) * volume * pull(q);
     if (alike) {

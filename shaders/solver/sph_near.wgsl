@@ -3,7 +3,7 @@
 //
 // A liquid particle lists all within the support, a solid one the liquid among them. The order is that
 // of the cells and of the particles in them, so that every later sum repeats to the bit. First all near by are
-// looked at, and those that count are written down; then these alone are summed.
+// looked at, one word each; those that may count are measured and written down; then these alone are summed.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> place: array<vec4<f32>>;
@@ -25,6 +25,8 @@
 @group(0) @binding(13) var<storage, read_write> errors: array<atomic<u32>>;
 // Gradient of the density of liquid, times the cell, as if what is solid were liquid too.
 @group(0) @binding(14) var<storage, read_write> inward: array<f32>;
+// Places of 1 / COARSE_STEPS of a cell within four cells, ten bits an axis; above them whether it is liquid.
+@group(0) @binding(15) var<storage, read> coarse: array<u32>;
 
 struct Walls {
     // What lies behind two counts once, as if they were perpendicular.
@@ -65,8 +67,29 @@ fn entry_of(k: u32, liquid: bool, i: u32) -> u32 {
     return select(solve.columns - 1u - (k >> 2u), k >> 2u, liquid) * params.count + i;
 }
 
-fn enlist(listed: ptr<function, Listed>, i: u32, j: u32) {
-    let liquid = place[j].w > 0.0;
+// A particle that is looked for by: its place, and the coarse one with each axis at the top of a word.
+struct Seeker {
+    place: vec4<f32>,
+    coarse: vec3<u32>,
+}
+
+fn axes(coarse: u32) -> vec3<u32> {
+    return vec3<u32>(coarse << 22u, coarse << 12u, coarse << 2u) & vec3<u32>(0xffc00000u);
+}
+
+// Whether a coarse place may be within the support: none that is in it is farther by rounding.
+fn may_count(me: Seeker, other: u32) -> bool {
+    let steps = vec3<i32>(axes(other) - me.coarse) >> vec3<u32>(22u);
+    return dot(steps, steps) < COARSE_REACH && (me.place.w > 0.0 || (other >> 30u) != 0u);
+}
+
+fn enlist(listed: ptr<function, Listed>, i: u32, j: u32, me: Seeker) {
+    let other = place[j];
+    let y = (me.place.xyz - other.xyz) * params.per_m;
+    if (dot(y, y) >= 1.0) {
+        return;
+    }
+    let liquid = other.w > 0.0;
     let k = select((*listed).solids, (*listed).liquids, liquid);
     let fours = (((*listed).liquids + 3u) >> 2u) + (((*listed).solids + 3u) >> 2u);
     if ((k & 3u) == 0u && fours >= solve.columns) {
@@ -78,19 +101,16 @@ fn enlist(listed: ptr<function, Listed>, i: u32, j: u32) {
     (*listed).solids += select(1u, 0u, liquid);
 }
 
-// Particles from one to before another, in runs of 32: a bit for each that is near, then those alone.
-fn search(listed: ptr<function, Listed>, i: u32, begin: u32, end: u32, mine: vec4<f32>) {
+// Particles from one to before another, in runs of 32: a bit for each that may count, then those alone.
+fn search(listed: ptr<function, Listed>, i: u32, begin: u32, end: u32, me: Seeker) {
     for (var first = begin; first < end; first += 32u) {
         var hits = 0u;
         for (var k = 0u; k < min(end - first, 32u); k++) {
-            let other = place[first + k];
-            let y = (mine.xyz - other.xyz) * params.per_m;
-            let counts = dot(y, y) < 1.0 && (mine.w > 0.0 || other.w > 0.0);
-            hits |= select(0u, 1u << k, counts);
+            hits |= select(0u, 1u << k, may_count(me, coarse[first + k]));
         }
         hits &= ~select(0u, 1u << ((i - first) & 31u), i >= first && i - first < 32u);
         while (hits != 0u) {
-            enlist(listed, i, first + firstTrailingBit(hits));
+            enlist(listed, i, first + firstTrailingBit(hits), me);
             hits &= hits - 1u;
         }
     }
@@ -100,6 +120,7 @@ fn search(listed: ptr<function, Listed>, i: u32, begin: u32, end: u32, mine: vec
 // the part in the first block, then what lies in the next one.
 fn listed_around(i: u32, mine: vec4<f32>) -> Listed {
     var listed = Listed(0u, 0u, false);
+    let me = Seeker(mine, axes(coarse[i]));
     let cell = clamp(clamped_cell(base_node(mine.xyz) - params.origin), vec3<u32>(1u), params.blocks * 4u - vec3<u32>(2u));
     let inner = (cell.x - 1u) & 3u;
     let whole = inner < 2u;
@@ -111,7 +132,7 @@ fn listed_around(i: u32, mine: vec4<f32>) -> Listed {
         let next = !whole && (k & 1u) != 0u;
         let from_cell = select(first, last + 2u - inner, next);
         let to_cell = select(first + 3u - inner, last, whole || next);
-        search(&listed, i, cell_start[from_cell], cell_end[to_cell], mine);
+        search(&listed, i, cell_start[from_cell], cell_end[to_cell], me);
     }
     return listed;
 }

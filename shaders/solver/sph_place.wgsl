@@ -18,6 +18,16 @@
 // Workgroups of even rounds, and of odd ones.
 @group(0) @binding(10) var<storage, read_write> even: array<vec4<u32>>;
 @group(0) @binding(11) var<storage, read_write> odd: array<vec4<u32>>;
+// Places as the search first sees them.
+@group(0) @binding(12) var<storage, read_write> coarse: array<u32>;
+
+// A place within four cells, ten bits an axis; whether it is liquid. From the window's corner: rounding is then as
+// fine far from the origin as beside it.
+fn coarsely(x: vec3<f32>, liquid: bool) -> u32 {
+    let from_corner = (x - params.cell_m * vec3<f32>(params.origin)) * params.per_m;
+    let steps = vec3<u32>(vec3<i32>(floor(from_corner * COARSE_STEPS))) & vec3<u32>(1023u);
+    return steps.x | (steps.y << 10u) | (steps.z << 20u) | select(0u, 1u << 30u, liquid);
+}
 
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -42,6 +52,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let cells = volume * params.per_m * params.per_m * params.per_m;
     let viscosity = select(0.0, substance.values[0], liquid);
     place[i] = vec4<f32>(position.xyz, select(-cells, cells, liquid));
+    coarse[i] = coarsely(position.xyz, liquid);
     motion[i] = vec4<f32>(kinematics[n + i].xyz, viscosity);
     nature[i] = vec4<f32>(volume / position.w, select(0.0, substance.values[1], liquid), viscosity, 0.0);
     pressure[i] = select(0.0, kept[bitcast<u32>(tag.x)], liquid);

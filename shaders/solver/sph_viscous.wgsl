@@ -8,9 +8,10 @@ fn couple_viscosity(a: f32, b: f32) -> f32 {
     return select(a + b, 0.5 * (a + b), a > 0.0 && b > 0.0);
 }
 
-// Eddies that are too small to be seen brake what shears at the scale of particles (Smagorinsky 1963).
-fn eddies(approach: f32) -> f32 {
-    return EDDIES * params.cell_m * abs(approach);
+// Eddies that are too small to be seen brake what shears at the scale of particles (Smagorinsky 1963). No substep
+// takes more than all of what particles approach by: without that bound what lands flat would fly apart.
+fn eddies(approach: f32, dt_s: f32) -> f32 {
+    return params.cell_m * min(EDDIES * abs(approach), EDDIES_MOST * params.cell_m / dt_s);
 }
 
 // Integral of the pair's coupling over a half-space at a distance, in which the velocity goes on as

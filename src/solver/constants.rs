@@ -70,6 +70,11 @@ pub const LIGHTEST: f32 = 65_536.0;
 pub const SPH_LIQUID: u32 = substance::SPH_LIQUID;
 /// Counters of the smoothed particles' errors, one a round; the last is the stiffest viscous coupling.
 pub const SPH_SLOTS: u32 = 32;
+/// Steps a cell of the places that the search for neighbours first sees: ten bits hold four cells.
+pub const COARSE_STEPS: f32 = 256.0;
+/// Square of how many of them a neighbour may be away: a cell, and four for the rounding of both places, of which they
+/// take two and windows up to 40 000 cells wide the rest.
+pub const COARSE_REACH: i32 = 260 * 260;
 /// Rounds of pressures made in any case.
 pub const SPH_LEAST_ROUNDS: u32 = 2;
 /// Share of a Jacobi step of the pressures: with momentum, more than half of one does not settle.
@@ -94,6 +99,10 @@ pub const WALL_VISCOUS: f32 = 10.0;
 pub const VISCOUS_RANGE: f32 = 2400.0;
 /// Viscosity of unresolved eddies, as a share of density, cell and the speed at which neighbours part.
 pub const EDDIES: f32 = 0.04;
+/// Most that pairs brake, over [`VISCOUS`] and viscosity / (density cell^2): Gershgorin's bound where particles are as dense as at rest.
+pub const VISCOUS_BOUND: f32 = 24.0;
+/// Viscosity of eddies, over density cell^2 / substep, at most: what pairs brake then stays stable.
+pub const EDDIES_MOST: f32 = 1.0 / (VISCOUS_BOUND * VISCOUS);
 /// An excess of density is made good no faster than this, 1/s: what overlaps parts without flying off.
 pub const THIN_OUT: f32 = 25.0;
 /// Gradient of density, times the cell, from which on a particle counts to a liquid's surface.
@@ -311,12 +320,15 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("SPH_SLOTS", Constant::U32(SPH_SLOTS)),
         ("STIFFEST", Constant::U32(SPH_SLOTS - 1)),
         ("SPH_LEAST_ROUNDS", Constant::U32(SPH_LEAST_ROUNDS)),
+        ("COARSE_STEPS", Constant::F32(COARSE_STEPS)),
+        ("COARSE_REACH", Constant::I32(COARSE_REACH)),
         ("DRIFT_SHARE", Constant::F32(DRIFT_SHARE)),
         ("SPH_RELAX", Constant::F32(SPH_RELAX)),
         ("SOLID_STRENGTH", Constant::F32(SOLID_STRENGTH)),
         ("MOMENTUM", Constant::F32(MOMENTUM)),
         ("TOLERATED", Constant::F32(TOLERATED)),
         ("EDDIES", Constant::F32(EDDIES)),
+        ("EDDIES_MOST", Constant::F32(EDDIES_MOST)),
         ("VISCOUS", Constant::F32(VISCOUS)),
         ("WALL_VISCOUS", Constant::F32(WALL_VISCOUS)),
         ("VISCOUS_RANGE", Constant::F32(VISCOUS_RANGE)),

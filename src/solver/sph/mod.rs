@@ -16,7 +16,7 @@
 mod passes;
 
 use super::advance::Substep;
-use super::constants::{SPH_LEAST_ROUNDS, VISCOUS, VISCOUS_RANGE, WORKGROUP};
+use super::constants::{SPH_LEAST_ROUNDS, VISCOUS, VISCOUS_BOUND, VISCOUS_RANGE, WORKGROUP};
 use super::core::Solver;
 use super::grid::GridBuffers;
 use super::kept::Kept;
@@ -41,8 +41,6 @@ const FALL_SHARE: f64 = 0.15;
 /// Share of the period of the shortest capillary wave, times 1 / sqrt(2 pi): half of what a continuous surface
 /// takes (Brackbill et al. 1992), for pairs of particles are stiffer.
 const CAPILLARY: f64 = 0.2;
-/// Most that pairs brake, over their common factor and viscosity / (density cell^2): Gershgorin's bound where particles are as dense as at rest.
-const VISCOUS_BOUND: f64 = 24.0;
 /// What is left of the stiffest viscous error after the implicit rounds.
 const VISCOUS_LEFT: f64 = 1e-2;
 
@@ -73,6 +71,7 @@ pub(super) struct Sph {
     pub slopes: wgpu::Buffer,
     pub near: wgpu::Buffer,
     pub place: wgpu::Buffer,
+    pub coarse: wgpu::Buffer,
     pub motion: wgpu::Buffer,
     pub nature: wgpu::Buffer,
     pub density: wgpu::Buffer,
@@ -124,6 +123,7 @@ impl Sph {
             slopes: gpu.storage::<[f32; 4]>("solver.sph_slopes", COLUMNS as usize * n)?,
             near: gpu.storage::<u32>("solver.sph_near", n)?,
             place: vectors("place")?,
+            coarse: gpu.storage::<u32>("solver.sph_coarse", n)?,
             motion: vectors("motion")?,
             nature: vectors("nature")?,
             density: gpu.storage::<[f32; 4]>("solver.sph_density", 2 * n)?,
@@ -172,7 +172,7 @@ impl Sph {
     /// Rounds of implicit viscosity that a substep takes, 0 where it is mild enough to be explicit.
     pub fn viscous_rounds(&self, cell_m: f64, dt_s: f64) -> u32 {
         let kinematic = f64::from(self.viscosity_pa_s) / f64::from(self.least_density_kg_m3);
-        let stiff = VISCOUS_BOUND * f64::from(VISCOUS) * kinematic * dt_s / (cell_m * cell_m);
+        let stiff = f64::from(VISCOUS_BOUND * VISCOUS) * kinematic * dt_s / (cell_m * cell_m);
         if stiff <= 1.0 {
             return 0;
         }
@@ -202,9 +202,9 @@ impl Sph {
         let moved = [matter, objects, colliders, kinematics, &self.kept, control];
         let places = [params, kinematics, matter, &solver.laws.table, &self.kept];
         let [even, odd] = &self.turns;
-        let placed = [&self.place, &self.motion, &self.nature, &self.pressure, &self.errors, even, odd];
+        let placed = [&self.place, &self.motion, &self.nature, &self.pressure, &self.errors, even, odd, &self.coarse];
         let cells = [params, &self.place, &self.nature, &grid.cell_start, &grid.cell_end, colliders, &self.solve];
-        let found = [&self.density, &self.answer, control, &self.errors, &self.inward];
+        let found = [&self.density, &self.answer, control, &self.errors, &self.inward, &self.coarse];
         let tight = [&self.place, &self.nature, &self.neighbours, &self.near, &self.inward, &self.skin];
         let around = [params, &self.solve, matter, objects, colliders, &self.place, &self.nature];
         let forced = [&self.density, &self.pressure, &self.motion, &self.skin, &self.predicted, &self.corrected];

@@ -271,6 +271,44 @@ fn nothing_outside_changes_momentum_in_free_flight() {
 }
 
 #[test]
+fn lists_are_whole_wherever_a_liquid_is() {
+    for corner in [Vec3::ZERO, Vec3::new(-400.0, 90.0, 1000.0)] {
+        let mut noise = Noise(9);
+        let mut particles = liquid(corner, Vec3::splat(0.15), 0.01, 0.0);
+        particles.position_m.iter_mut().for_each(|x| *x += noise.vec() * (0.4 * D_M));
+        let mut solver = solver(Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) }, &particles);
+        let before: Vec<Vec3> = solver.states().expect("states").iter().map(|s| s.position_m).collect();
+        solver.advance(1e-6, &Stop::default()).expect("an advance");
+        let near: Vec<u32> = gpu().read(&solver.sph().expect("a liquid").near, particles.len()).expect("lists");
+        let per_m = 1.0 / CELL_M;
+        let around = |x: &Vec3| before.iter().filter(|&y| ((*x - *y) * per_m).length_squared() < 1.0).count() - 1;
+        let mut want: Vec<usize> = before.iter().map(around).collect();
+        let mut got: Vec<usize> = near.iter().map(|n| (n & 0xfff) as usize).collect();
+        want.sort_unstable();
+        got.sort_unstable();
+        assert_eq!(got, want, "from {corner}");
+    }
+}
+
+#[test]
+fn a_deep_column_that_lands_flat_does_not_fly_apart() {
+    // Walls hold it on four sides: all of it has to stop at once. Its layers are those of a lattice.
+    let size = Vec3::new(4.0, 4.0, 100.0) * D_M;
+    let mut particles = liquid(Vec3::new(0.0, 0.0, 0.8 * D_M), size, 1e-3, 0.0728);
+    let fall_m_s = 5.4;
+    particles.velocity_m_s.fill(Vec3::new(0.0, 0.0, -fall_m_s));
+    let mut settings = Settings::new(CELL_M);
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.3, restitution: 0.0 });
+    settings.colliders = vec![wall(Vec3::ZERO, Vec3::X), wall(size, -Vec3::X), wall(Vec3::ZERO, Vec3::Y), wall(size, -Vec3::Y)];
+    let mut solver = solver(settings, &particles);
+    let report = solver.advance(0.06, &Stop::default()).expect("an advance");
+    assert_eq!(report.retries, 0);
+    let energy: f64 = solver.states().expect("states").iter().map(|s| f64::from(s.velocity_m_s.length_squared())).sum();
+    let share = energy / (particles.len() as f64 * f64::from(fall_m_s * fall_m_s));
+    assert!(share < 0.9, "{share} of its energy is left");
+}
+
+#[test]
 fn two_runs_and_a_resumed_one_end_in_the_same_bits() {
     let build = || {
         let mut particles = with(

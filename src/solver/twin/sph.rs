@@ -265,7 +265,7 @@ pub fn forces(all: &[Particle], around: &Surroundings, dt_s: f64, viscous: bool)
             sum -= along * if alike { (strength * there + its * member) * tug(q) / me.volume } else { wetted };
             let calm = f64::from(SKIN_CALM) * ((me.tension + other.tension) * cell / (me.lightness + other.lightness)).sqrt();
             let approach = (me.v - other.v).dot(along);
-            let eddy = f64::from(EDDIES) * cell * approach.abs() * 2.0 / (me.lightness + other.lightness);
+            let eddy = cell * (f64::from(EDDIES) * approach.abs()).min(f64::from(EDDIES_MOST) * cell / dt_s) * 2.0 / (me.lightness + other.lightness);
             let eta = eddy + if alike { calm * member * there } else { 0.0 } + if viscous { pair_viscosity(me, other) } else { 0.0 };
             sum += along * (f64::from(VISCOUS) * eta * other.volume * derivative(weight, q) * approach * q / (q * q + 0.01));
         }
