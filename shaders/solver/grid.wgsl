@@ -75,7 +75,7 @@ fn settle(at: Node) {
         held = max(held, held_by(mark.x, x, at));
     }
     if (params.pin_count > 0u) {
-        let pin = pinned(x);
+        let pin = pinned(x, at.layer);
         v = select(v, pin.xyz, pin.w > 0.0);
         held = select(held, 0.0, pin.w > 0.0);
         mass = select(mass, -mass, pin.w > 0.0);

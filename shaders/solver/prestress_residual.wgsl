@@ -60,7 +60,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
                 bound = support(mark.x, x);
             }
             // Pins that move begin where they were captured.
-            bound.w = select(bound.w, 2.0, pinned(x).w > 0.0);
+            bound.w = select(bound.w, 2.0, pinned(x, at.layer).w > 0.0);
             weight = select(0.0, length(force) / mass, measured);
         } else if (bound.w == 1.0 && dot(force, bound.xyz) > RELEASE * weight * mass) {
             // A support only pushes.

@@ -25,7 +25,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     }
     workgroupBarrier();
     for (var p = lane; p < shapes[b].points; p += RIGID_LANES) {
-        if (pinned(place_of(b, p)).w > 0.0) {
+        if (body_pinned(place_of(b, p), shapes[b].object).w > 0.0) {
             atomicMin(&found, p);
         }
     }
@@ -34,7 +34,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         let first = atomicLoad(&found);
         bodies[b].velocity.w = 0.0;
         if (first != 0xffffffffu) {
-            bodies[b].velocity = pinned(place_of(b, first));
+            bodies[b].velocity = body_pinned(place_of(b, first), shapes[b].object);
         }
         let spin = spin_of(shapes[b].inverse, bodies[b].turn, bodies[b].angular_momentum.xyz);
         let fastest = length(bodies[b].velocity.xyz) + length(spin) * shapes[b].radius_m;

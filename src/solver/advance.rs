@@ -6,7 +6,7 @@ use super::fields::Fields;
 use super::grid::GridBuffers;
 use super::obstacles;
 use super::retry::{Tries, WayOn};
-use super::types::{Advance, PinRegion, Pose, SolverError};
+use super::types::{Advance, SolverError};
 use super::watch::{Control, Watch};
 use crate::Stop;
 use crate::gpu::{Readback, Recording, Tier};
@@ -109,6 +109,7 @@ impl Solver {
         if (until_s - frame_end_s).abs() < SAME_TIME_S {
             until_s = frame_end_s;
         }
+        self.begin_pins()?;
         let mut seen = self.look()?;
         self.backup();
         let calm = (seen.driven_m_s, seen.drift_m_s);
@@ -266,9 +267,9 @@ impl Solver {
                 *sum += force.acceleration_m_s2;
             }
         }
-        let pins: Vec<_> = self.settings.pins.iter().filter(|p| self.in_force(p.from_s, p.to_s)).collect();
-        let pose = |p: &PinRegion| self.poses.get(p.object as usize).copied().unwrap_or(Pose::CAPTURED);
-        let records: Vec<_> = pins.iter().map(|p| obstacles::pin(p, &pose(p), self.settings.cell_m, self.time_s)).collect();
+        let pins = self.settings.pins.iter().zip(&self.grips).filter(|(p, _)| self.in_force(p.from_s, p.to_s));
+        let records: Vec<_> =
+            pins.map(|(p, grip)| obstacles::pin(p, &grip.pose, self.layers.layer_of(p.object), self.settings.cell_m, self.time_s)).collect();
         self.params.pin_count = records.len() as u32;
         self.gpu.upload(&self.pins_buffer, &records);
         self.set_fields();

@@ -5,14 +5,20 @@ use super::laws::{Rows, from_rows, rows};
 use super::state::ParticleState;
 use super::substance::Substance;
 use super::types::SolverError;
-use glam::Mat3;
+use crate::spec::limits;
+use glam::{DMat3, Mat3};
+
+/// Nothing is weakened below this modulus.
+const SOFTEST_PA: f32 = limits::YOUNG_PA.0 as f32;
+/// Newton steps to the rotation of F, which squares its distance from it each time.
+const ROTATION_STEPS: u32 = 24;
 
 /// Moduli after a change of material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Moduli {
     /// Those that it had.
     Kept,
-    /// Those that it had, times a factor over 0: weakened, or hardened.
+    /// Those that it had, times a factor over 0: weakened, or hardened. What is as soft as anything may be gets no softer.
     Scaled(f32),
     /// Young's modulus, Pa, and Poisson's ratio.
     Young {
@@ -35,7 +41,10 @@ impl Moduli {
     fn of(self, mu_pa: f32, lambda_pa: f32) -> (f32, f32) {
         match self {
             Moduli::Kept => (mu_pa, lambda_pa),
-            Moduli::Scaled(factor) => (mu_pa * factor, lambda_pa * factor),
+            Moduli::Scaled(factor) => {
+                let factor = factor.max((SOFTEST_PA / (lambda_pa + 2.0 * mu_pa)).min(1.0) * factor.signum());
+                (mu_pa * factor, lambda_pa * factor)
+            }
             Moduli::Young { young_pa: e, poisson: nu } => (e / (2.0 * (1.0 + nu)), e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))),
             Moduli::Lame { mu_pa, lambda_pa } => (mu_pa, lambda_pa),
         }
@@ -69,8 +78,10 @@ impl Solver {
         let mut shown = self.shown()?;
         let mut bodies_change = false;
         for (i, state) in states.iter_mut().enumerate().filter(|(i, s)| picked[*i] && s.object() == object) {
+            let softer = state.lambda_pa + 2.0 * state.mu_pa;
             (state.mu_pa, state.lambda_pa) = moduli.of(state.mu_pa, state.lambda_pa);
             let modulus = state.lambda_pa + 2.0 * state.mu_pa;
+            let carried = self.laws.substances[state.substance()].carries_by_stretch();
             let stiff = match substance {
                 Some(after) => after.rigid().is_none(),
                 None => !state.is_rigid(),
@@ -93,7 +104,11 @@ impl Solver {
                     (state.mu_pa, state.lambda_pa, state.affine) = (0.0, 0.0, [0.0; 9]);
                 }
             }
-            state.history = self.laws.substances[state.substance()].history_with(state.f(), state.history);
+            let law = &self.laws.substances[state.substance()];
+            if carried && law.carries_by_stretch() && softer > 0.0 && softer < modulus {
+                ease(state, softer / modulus, law.shown_stretch().is_none(), &mut unstressed[i]);
+            }
+            state.history = law.history_with(state.f(), state.history);
         }
         if bodies_change {
             self.reassemble(&mut states, &mut unstressed)?;
@@ -145,6 +160,26 @@ fn turn(state: &mut ParticleState, before: &Substance, after: &Substance, shape:
         // F0 is still that of the same F.
         _ => {}
     }
+}
+
+/// Matter that becomes stiffer keeps the stress that it carries, not its strain: nobody did the work of straining it so far.
+/// V - I, V the left stretch, falls as the modulus rises.
+fn ease(state: &mut ParticleState, share: f32, seen_by_f: bool, unstressed: &mut Rows) {
+    let f = state.f().as_dmat3();
+    // What is inside out or flat carries nothing that is worth keeping.
+    let mut next = DMat3::IDENTITY;
+    if f.determinant() > 1e-6 {
+        let mut turn = f;
+        for _ in 0..ROTATION_STEPS {
+            turn = (turn + turn.inverse().transpose()) * 0.5;
+        }
+        let share = f64::from(share);
+        next = (f * turn.transpose() * share + DMat3::IDENTITY * (1.0 - share)) * turn;
+    }
+    if seen_by_f {
+        *unstressed = rows((next.inverse() * f * from_rows(unstressed).as_dmat3()).as_mat3());
+    }
+    state.set_f(next.as_mat3());
 }
 
 #[cfg(test)]

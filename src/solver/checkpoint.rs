@@ -1,6 +1,7 @@
 //! A solver's state as bytes, from which another goes on to the same bits.
 
 use super::core::Solver;
+use super::grip::Pose;
 use super::state::{PLANES, ParticleState, unpack};
 use super::substance::Substance;
 use super::types::SolverError;
@@ -68,7 +69,7 @@ impl Solver {
         let bodies = self.rigid.as_ref().map_or(0, |r| r.count() as u64);
         let header =
             Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s, table_bytes, bodies, wary: self.wary };
-        let head = [bytemuck::bytes_of(&header), &table, bytemuck::cast_slice(&self.poses)].concat();
+        let head = [bytemuck::bytes_of(&header), &table, bytemuck::cast_slice(&self.poses())].concat();
         // A change may have made them on the way.
         let anchors = bytemuck::cast_slice(self.rigid.as_ref().map_or(&[][..], |r| &r.anchors_host)).to_vec();
         let state = &self.buffers[self.current];
@@ -78,6 +79,10 @@ impl Solver {
         sources.extend(self.kept().map(|kept| (&kept.live, kept.bytes())));
         let readback = Readback::start(&self.gpu, &sources);
         Ok(Checkpoint { head, anchors, count: count as usize, readback, gpu: self.gpu.clone() })
+    }
+
+    fn poses(&self) -> Vec<Pose> {
+        self.grips.iter().map(|grip| grip.pose).collect()
     }
 
     /// Goes back, or forward, to a checkpoint of a solver with the same settings and particles. Settings that changed on
@@ -100,11 +105,12 @@ impl Solver {
         // A material may have changed since the start.
         let table: Vec<Substance> = serde_json::from_slice(table).map_err(|e| refuse(e.to_string()))?;
         self.set_substances(&table)?;
-        let of_poses = size_of_val(self.poses.as_slice());
+        let of_poses = size_of_val(self.poses().as_slice());
         let Some((poses, bytes)) = bytes.split_at_checked(of_poses) else {
-            return Err(refuse(format!("{} bytes, of which {of_poses} are where objects started", bytes.len())));
+            return Err(refuse(format!("{} bytes, of which {of_poses} are where pins hold", bytes.len())));
         };
-        self.poses = bytemuck::pod_collect_to_vec(poses);
+        let poses: Vec<Pose> = bytemuck::pod_collect_to_vec(poses);
+        self.grips.iter_mut().zip(poses).for_each(|(grip, pose)| grip.pose = pose);
         let anchors = if header.bodies > 0 { count * size_of::<[f32; 4]>() } else { 0 };
         let short = |whole: usize| refuse(format!("{} bytes where {count} particles take {whole}", bytes.len()));
         if bytes.len() < states + tail + anchors || header.bodies > count as u64 {

@@ -5,6 +5,7 @@ use super::constants::{BLOCK_SLACK_CELLS, DEALT, FEW_PARTICLES, FIXED_BITS, REAC
 use super::encounter::{Encounter, Layers};
 use super::fields::Fields;
 use super::grid::{GROUPS_MOST, GridBuffers, Window, params_buffer};
+use super::grip::Grip;
 use super::kept::Kept;
 use super::laws::{Laws, rows};
 use super::liquid::LiquidPasses;
@@ -14,7 +15,7 @@ use super::rigid::{self, Rigid};
 use super::sph::Sph;
 use super::state::{self, ParticleState, StateBuffers};
 use super::transfer::Transfers;
-use super::types::{Particles, Placement, Pose, Settings, Softened, SolverError};
+use super::types::{Particles, Placement, Settings, Softened, SolverError};
 use super::volume::VolumePasses;
 use super::wary::{self, Wary};
 use super::watch::{Control, Watch};
@@ -86,8 +87,10 @@ pub struct Solver {
     /// Of what is nearly incompressible, where anything is.
     pub(super) volume: Option<VolumePasses>,
     pub(super) object_count: u32,
-    /// Where each object started; pins go along.
-    pub(super) poses: Vec<Pose>,
+    /// What each pin holds.
+    pub(super) grips: Vec<Grip>,
+    /// Which layer of the grid each object is on.
+    pub(super) layers: Layers,
     /// Contact between objects, where there are several.
     pub(super) encounter: Option<Encounter>,
     pub(super) control: wgpu::Buffer,
@@ -156,7 +159,8 @@ impl Solver {
             momentum_floor: heaviest_kg * 1e-3,
             ..Default::default()
         };
-        Layers::deal(&settings, &states, &particles.substances).note(&mut params);
+        let layers = Layers::deal(&settings, &states, &particles.substances);
+        layers.note(&mut params);
         let rigid = rigid::assemble(&states, &particles.substances, &colliders, settings.cell_m)?.map(|all| Rigid::new(gpu, &all)).transpose()?;
         let passes = Passes::new(gpu);
         let mut solver = Solver {
@@ -167,7 +171,8 @@ impl Solver {
             pins_buffer: gpu.storage::<PinRecord>("solver.pins", settings.pins.len().max(1))?,
             objects_buffer: gpu.storage::<[f32; 4]>("solver.objects", object_count as usize)?,
             object_count,
-            poses: vec![Pose::CAPTURED; object_count as usize],
+            layers,
+            grips: settings.pins.iter().map(|pin| Grip::new(pin, &states, settings.cell_m)).collect(),
             encounter: Encounter::new(gpu, &settings, &states, &particles.substances, object_count)?,
             laws: Laws::new(gpu)?,
             liquid: None,
@@ -260,9 +265,7 @@ impl Solver {
             s.set_affine(cross * s.mass_kg);
         })?;
         self.edit_shown(|i, g| if moved[i] { turn * g } else { g })?;
-        if let Some(pose) = self.poses.get_mut(object as usize) {
-            *pose = Pose::of(placement);
-        }
+        self.let_go(object);
         self.rigid.iter().try_for_each(|r| r.place(&self.gpu, object, placement))?;
         Ok(way_out)
     }

@@ -65,6 +65,11 @@ impl Layers {
         }
     }
 
+    /// Which one an object is on; none that there is, where it has no part in the grid.
+    pub fn layer_of(&self, object: u32) -> u32 {
+        self.of[(object % DEALT) as usize].unwrap_or(u32::MAX)
+    }
+
     /// Of each layer: the largest Coulomb coefficient of its objects, and their volume, m^3.
     pub fn surfaces(&self, settings: &Settings, states: &[ParticleState], substances: &[Substance], object_count: u32) -> Vec<[f32; 2]> {
         // Of each object: volume, and volume times friction.
@@ -87,6 +92,7 @@ impl Solver {
         // What turns to water slips from then on.
         self.encounter = Encounter::new(&self.gpu, &self.settings, states, &self.laws.substances, self.object_count)?;
         layers.note(&mut self.params);
+        self.layers = layers;
         self.soft = states.iter().any(|s| !s.is_rigid());
         if self.grid.as_ref().is_some_and(|g| g.kind != self.grid_kind()) {
             // The next one has what is asked for now.

@@ -19,6 +19,7 @@ mod core;
 mod encounter;
 mod fields;
 mod grid;
+mod grip;
 mod impact;
 mod kept;
 mod laws;
@@ -82,4 +83,4 @@ pub fn shader_text() -> String {
 }
 
 /// Raised whenever the same input gives other bits.
-pub const VERSION: u32 = 25;
+pub const VERSION: u32 = 26;

@@ -1,6 +1,7 @@
 //! Static colliders and pins as the kernels read them, and the same geometry on the CPU.
 
-use super::types::{PinRegion, Pose, Settings};
+use super::grip::Pose;
+use super::types::{PinRegion, Settings};
 use crate::spec::ColliderShape;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -23,8 +24,11 @@ pub(super) struct ColliderRecord {
 pub(super) struct PinRecord {
     pub at: [f32; 4],
     pub shape: [f32; 4],
-    pub low: [f32; 4],
-    pub high: [f32; 4],
+    /// Corners of the box that it is limited to; whom it holds: an object's bodies, and its layer of the grid.
+    pub low: [f32; 3],
+    pub object: u32,
+    pub high: [f32; 3],
+    pub layer: u32,
     /// Where `centre` of the captured pose is at the start of the segment, how the object was turned about it (columns), and
     /// the pin's velocity.
     pub shift: [f32; 4],
@@ -57,7 +61,7 @@ pub(super) fn colliders(settings: &Settings) -> Vec<ColliderRecord> {
 /// A pin holds the nodes up to half a cell around its shape, so that it holds what is in it, and at
 /// least one layer; around the object's box there is room for the nodes that its outermost particles
 /// reach.
-pub(super) fn pin(region: &PinRegion, pose: &Pose, cell_m: f32, time_s: f64) -> PinRecord {
+pub(super) fn pin(region: &PinRegion, pose: &Pose, layer: u32, cell_m: f32, time_s: f64) -> PinRecord {
     let (at, shape) = geometry(&region.shape, 0.5 * cell_m);
     let room = Vec3::splat(2.0 * cell_m);
     // A hair later, so that a path's corner counts as passed.
@@ -65,12 +69,22 @@ pub(super) fn pin(region: &PinRegion, pose: &Pose, cell_m: f32, time_s: f64) -> 
     PinRecord {
         at,
         shape,
-        low: (region.low_m - room).extend(0.0).into(),
-        high: (region.high_m + room).extend(0.0).into(),
-        shift: (shift.as_vec3() + Vec3::from_slice(&pose.start_m)).extend(0.0).into(),
-        centre: pose.centre_m,
+        low: (region.low_m - room).into(),
+        object: region.object,
+        high: (region.high_m + room).into(),
+        layer,
+        shift: (shift.as_vec3() + Vec3::from(pose.start_m)).extend(0.0).into(),
+        centre: Vec3::from(pose.centre_m).extend(0.0).into(),
         turn: pose.turn,
         velocity: velocity.as_vec3().extend(0.0).into(),
+    }
+}
+
+impl PinRecord {
+    /// Whether it holds what lies there in the captured pose.
+    pub fn surrounds(&self, x: Vec3) -> bool {
+        let shape = ColliderRecord { at: self.at, shape: self.shape, surface: [0.0; 4] };
+        x.cmpge(Vec3::from(self.low)).all() && x.cmple(Vec3::from(self.high)).all() && shape.touch(x).distance_m <= 0.0
     }
 }
 

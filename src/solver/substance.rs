@@ -238,6 +238,11 @@ impl Substance {
         matches!(self, Substance::Elastic(_) | Substance::Muscle { .. } | Substance::Plastic { .. } | Substance::Rigid { .. })
     }
 
+    /// Whether its stress is that of its stretch.
+    pub(super) fn carries_by_stretch(&self) -> bool {
+        self.keeps_shape() && !self.is_rigid() || matches!(self, Substance::Viscoplastic { .. } | Substance::Snow { .. })
+    }
+
     /// What its law remembers of a past in which nothing happened.
     pub(super) fn first_history(&self) -> f32 {
         match self {

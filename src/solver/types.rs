@@ -4,8 +4,7 @@ use super::substance::Substance;
 use crate::gpu::GpuError;
 use crate::spec::ColliderShape;
 use crate::spec::expression::Program;
-use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Mat3, Quat, Vec3};
+use glam::{DVec3, Quat, Vec3};
 
 /// The particles of all objects, as sampled: the captured pose, free of stress. World frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,8 +72,9 @@ pub struct Collider {
     pub restitution: f32,
 }
 
-/// Holds whatever lies in a shape, within the box of the object that it belongs to: still, or along a path. Shape and box
-/// are of the captured pose and go with the object to where it starts ([`Placement`]).
+/// Holds the part of an object that lies in a shape, within its box: still, or along a path. Shape and box are of the
+/// captured pose; what is held is held where it is when the pin begins. Where several soft objects share a layer of the grid,
+/// all of them are held that come there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PinRegion {
     /// Index of the object.
@@ -216,34 +216,6 @@ impl Placement {
     /// Whether nothing is moved.
     pub(super) fn is_captured(&self) -> bool {
         self.rotation.is_near_identity() && self.offset_m == Vec3::ZERO
-    }
-}
-
-/// How an object was moved to where it starts: x' = turn (x - centre) + start.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(super) struct Pose {
-    /// Columns.
-    pub turn: [[f32; 4]; 3],
-    pub centre_m: [f32; 4],
-    pub start_m: [f32; 4],
-}
-
-impl Pose {
-    /// Where it was captured.
-    pub const CAPTURED: Pose =
-        Pose { turn: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]], centre_m: [0.0; 4], start_m: [0.0; 4] };
-
-    pub fn of(placement: &Placement) -> Pose {
-        if placement.is_captured() {
-            return Pose::CAPTURED;
-        }
-        let turn = Mat3::from_quat(placement.rotation.normalize());
-        Pose {
-            turn: [turn.x_axis, turn.y_axis, turn.z_axis].map(|axis| axis.extend(0.0).into()),
-            centre_m: placement.centre_m.extend(0.0).into(),
-            start_m: (placement.centre_m + placement.offset_m).extend(0.0).into(),
-        }
     }
 }
 

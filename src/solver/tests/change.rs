@@ -67,6 +67,39 @@ fn a_part_may_turn_and_the_rest_stays() {
 }
 
 #[test]
+fn what_becomes_stiffer_neither_leaps_nor_looks_other() {
+    let mut solver = standing(0.2, 2e3, 0.3);
+    // It is far from where it would rest: squeezed to half its height, which a stiff block would leave at 14 m/s.
+    solver
+        .edit(|s| {
+            s.position_m.z *= 0.5;
+            s.set_f(glam::Mat3::from_diagonal(Vec3::new(1.0, 1.0, 0.5)) * s.f());
+        })
+        .expect("an edit");
+    let seen = |solver: &Solver| {
+        let (states, rows) = (solver.states().expect("states"), solver.gpu.read::<[[f32; 4]; 3]>(&solver.unstressed, solver.params.count as usize));
+        let first = rows.expect("rows").iter().map(crate::solver::laws::from_rows).collect::<Vec<_>>();
+        states.iter().zip(first).map(|(s, first)| s.f() * first).collect::<Vec<_>>()
+    };
+    let (before, top_m) = (seen(&solver), height_m(&solver));
+    solver.change_material(0, None, Some(&Substance::default()), Moduli::Young { young_pa: 2e6, poisson: 0.3 }).expect("a change");
+    assert!(before.iter().zip(seen(&solver)).all(|(a, b)| a.abs_diff_eq(b, 1e-5)), "another shape");
+    let fastest = |solver: &Solver| solver.states().expect("states").iter().map(|s| s.velocity_m_s.length()).fold(0.0, f32::max);
+    let mut most = 0.0f32;
+    for k in 1..=10 {
+        solver.advance(0.01 * f64::from(k), &Stop::default()).expect("an advance");
+        most = most.max(fastest(&solver));
+    }
+    // What it carried, 1 kPa, is as much as a twentieth of a metre a second of sound stores.
+    assert!(most < 0.2 && (height_m(&solver) / top_m - 1.0).abs() < 0.02, "{most} m/s, {} of {top_m} m", height_m(&solver));
+    // However often it is weakened, it is matter.
+    for _ in 0..40 {
+        solver.change_material(0, None, None, Moduli::Scaled(1e-6)).expect("a change");
+    }
+    assert!(solver.states().expect("states").iter().all(|s| s.lambda_pa + 2.0 * s.mu_pa > 99.0));
+}
+
+#[test]
 fn a_weakened_column_sinks_by_as_much_again() {
     // Under half its modulus the strain of its own weight is twice what it was: the top comes down by
     // rho g H^2 / (2 E), and with it the middle by half of that and a quarter less: H^2 / 3 over H^2 / 2.

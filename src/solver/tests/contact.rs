@@ -4,6 +4,7 @@ use super::{block, centre_m, solver};
 use crate::Stop;
 use crate::gpu::Gpu;
 use crate::solver::obstacles::{self, distance_m};
+use crate::solver::validate::joined;
 use crate::solver::{Collider, ObjectForce, Particles, PinRegion, Placement, Plane, Settings, Solver, SolverError};
 use crate::spec::{BoxShape, ColliderShape, PlaneShape, SphereShape};
 use glam::{Quat, Vec3};
@@ -162,6 +163,31 @@ fn a_pin_goes_with_its_object_to_where_that_starts() {
     second.restore(&checkpoint).expect("a state");
     second.advance(0.1, &Stop::default()).expect("an advance");
     assert!(first.checkpoint().expect("a checkpoint") == second.checkpoint().expect("a checkpoint"), "other bits");
+}
+
+#[test]
+fn a_pin_that_begins_late_holds_its_own_object_where_that_has_come_to() {
+    let size_m = Vec3::splat(0.1);
+    let flies = block(Vec3::ZERO, size_m, 0.025, 2e6, 0.3);
+    // Another falls through where the first one was captured.
+    let falls = block(Vec3::new(0.0, 0.0, 0.15), size_m, 0.025, 2e6, 0.3);
+    let all = BoxShape { centre_m: [0.05; 3], size_m: [0.2; 3] };
+    let pin = PinRegion { object: 0, shape: ColliderShape::Box(all), low_m: Vec3::ZERO, high_m: size_m, from_s: 0.05, to_s: 1.0, path: vec![] };
+    let mut solver = solver(Settings { pins: vec![pin], ..Settings::new(CELL_M) }, &joined(flies, falls));
+    solver.set_velocity(0, Vec3::new(8.0, 0.0, 0.0));
+    let centre = |solver: &Solver, object: u32| {
+        let states = solver.states().expect("states");
+        let of: Vec<Vec3> = states.iter().filter(|s| s.object() == object).map(|s| s.position_m).collect();
+        of.iter().sum::<Vec3>() / of.len() as f32
+    };
+    solver.advance(0.05, &Stop::default()).expect("an advance");
+    let [held, falling] = [0, 1].map(|object| centre(&solver, object));
+    assert!((held.x - 0.45).abs() < 0.01, "it flew to {held}");
+    solver.advance(0.15, &Stop::default()).expect("an advance");
+    assert!((centre(&solver, 0) - held).length() < 2e-3, "held at {held}, it came to {}", centre(&solver, 0));
+    let fallen_m = falling.z - centre(&solver, 1).z;
+    let expected_m = 0.5 * 9.81 * (0.15f32.powi(2) - 0.05f32.powi(2));
+    assert!((fallen_m - expected_m).abs() < 0.003, "the other fell by {fallen_m}, not {expected_m}");
 }
 
 #[test]

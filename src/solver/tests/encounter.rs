@@ -89,7 +89,8 @@ fn layers_meet_as_their_twins_do() {
     solver.set_surroundings();
     solver.start_segment();
     let states = solver.states().expect("states");
-    let (colliders, pins) = (obstacles::colliders(&solver.settings), [obstacles::pin(&solver.settings.pins[0], &solver.poses[0], CELL_M, 0.0)]);
+    let (colliders, pins) =
+        (obstacles::colliders(&solver.settings), [obstacles::pin(&solver.settings.pins[0], &solver.grips[0].pose, 0, CELL_M, 0.0)]);
     let substances = solver.laws.substances.clone();
     let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &[Vec3::ZERO; 3], substances: &substances };
     let dt_s = 4e-4;
@@ -103,7 +104,7 @@ fn layers_meet_as_their_twins_do() {
     let mut stressed = states.clone();
     twin::stress(&mut stressed, &around, dt_s);
     let mut layers: Vec<twin::Grid> = (0..3).map(|o| twin::p2g(&of(&stressed, o).copied().collect::<Vec<_>>(), &around)).collect();
-    layers.iter_mut().for_each(|grid| twin::grid(grid, &around, dt_s, 0.0));
+    (0..).zip(&mut layers).for_each(|(layer, grid)| twin::grid(grid, layer, &around, dt_s, 0.0));
     let apart = layers.clone();
     let dealt = Layers::deal(&solver.settings, &states, &solver.laws.substances);
     let surfaces = dealt.surfaces(&solver.settings, &states, &solver.laws.substances, 3);

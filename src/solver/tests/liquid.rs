@@ -36,7 +36,7 @@ fn density_tension_and_walls_follow_the_twins() {
     let thick = Substance::Liquid { viscosity_pa_s: 400.0, surface_tension_n_m: 1.0 };
     let (mut solver, mut states) = scene_of([thin, thick]);
     let colliders = obstacles::colliders(&solver.settings);
-    let pins = [obstacles::pin(&solver.settings.pins[0], &solver.poses[0], CELL_M, 0.0)];
+    let pins = [obstacles::pin(&solver.settings.pins[0], &solver.grips[0].pose, 0, CELL_M, 0.0)];
     let substances = solver.laws.substances.clone();
     let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &[Vec3::ZERO; 2], substances: &substances };
     let fields = Fields::new(&states, &around, &active_nodes(&solver, &states));
@@ -109,7 +109,7 @@ fn density_tension_and_walls_follow_the_twins() {
         let [x, y, z, viscosity] = pull[stored.node(node, 0)];
         (value.pull_m_s2, value.viscosity_m2_s, value.film_m) = (Vec3::new(x, y, z), viscosity, film[stored.node(node, 0)]);
     }
-    twin::grid(&mut want, &around, DT_S, SUBSTEP.since_s);
+    twin::grid(&mut want, 0, &around, DT_S, SUBSTEP.since_s);
     let velocity: Vec<[f32; 4]> = gpu().read(&grid.velocity, nodes).expect("velocity");
     let heaviest = want.values().map(|n| n.mass).fold(0.0, f64::max);
     let strongest = want.values().map(|n| n.momentum.length()).fold(0.0, f64::max);

@@ -218,7 +218,7 @@ fn follows_the_twins(substances: [Substance; 2]) {
 pub(super) fn follows_the_twins_on(device: &Gpu, substances: [Substance; 2]) {
     let (mut solver, mut states) = scene_on(device, substances);
     let colliders = obstacles::colliders(&solver.settings);
-    let pins = [obstacles::pin(&solver.settings.pins[0], &solver.poses[0], CELL_M, 0.0)];
+    let pins = [obstacles::pin(&solver.settings.pins[0], &solver.grips[0].pose, 0, CELL_M, 0.0)];
     let accelerations = [Vec3::ZERO, Vec3::new(3.0, -2.0, 1.0)];
     let substances = solver.laws.substances.clone();
     let shown_before: Vec<[[f32; 4]; 3]> =
@@ -280,7 +280,7 @@ pub(super) fn follows_the_twins_on(device: &Gpu, substances: [Substance; 2]) {
     // Grid: velocities, from which momenta follow too.
     run(|r| r.indirect_with(&passes.grid, &b.grid, &SUBSTEP, &grid.active_groups, 0));
     let mut want = want;
-    twin::grid(&mut want, &around, DT_S, SUBSTEP.since_s);
+    twin::grid(&mut want, 0, &around, DT_S, SUBSTEP.since_s);
     let velocity: Vec<[f32; 4]> = gpu().read(&grid.velocity, nodes).expect("velocity");
     for (node, value) in want.iter().filter(|(_, v)| v.mass > 1e-2 * heaviest) {
         let scale = (strongest / value.mass) as f32;

@@ -21,9 +21,10 @@ pub fn encounter(layers: &mut [Grid], surfaces: &[[f32; 2]], around: &Surroundin
     nodes.sort_unstable();
     nodes.dedup();
     for node in nodes {
-        let held = around.pins.iter().any(|pin| pinned(pin, Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * around.params.cell_m, 0.0));
+        let x = Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * around.params.cell_m;
         let side = |(layer, grid): (usize, &Grid)| {
             let found = grid.get(&node)?;
+            let held = around.pins.iter().any(|pin| pinned(pin, layer as u32, x, 0.0));
             let ease = if held { 0.0 } else { 1.0 / found.mass };
             Some(Side { layer, v: found.velocity.as_dvec3(), mass: found.mass, ease, slope: slope(grid, node) })
         };

@@ -139,8 +139,8 @@ pub fn mark_gap_m(mark: u32, params: &Params) -> f32 {
     params.reach_m * (1.0 - ((mark >> 11) - 1) as f32 / GAP_STEPS)
 }
 
-/// `grid.wgsl`: velocities after gravity, contact and pins.
-pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32, since_s: f32) {
+/// `grid.wgsl`, on one layer: velocities after gravity, contact and pins.
+pub fn grid(grid: &mut Grid, layer: u32, around: &Surroundings, dt_s: f32, since_s: f32) {
     for (node, value) in grid.iter_mut() {
         let x = Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * around.params.cell_m;
         let mut v = (value.momentum / value.mass).as_vec3() + (Vec3::from(around.params.gravity_m_s2) + value.pull_m_s2) * dt_s;
@@ -150,19 +150,17 @@ pub fn grid(grid: &mut Grid, around: &Surroundings, dt_s: f32, since_s: f32) {
                 value.held = value.held.max(held_by(mark, x, around, dt_s, value));
             }
         }
-        if let Some(pin) = around.pins.iter().find(|pin| pinned(pin, x, since_s)) {
+        if let Some(pin) = around.pins.iter().find(|pin| pinned(pin, layer, x, since_s)) {
             (v, value.held) = (Vec3::from_slice(&pin.velocity), 0.0);
         }
         value.velocity = v;
     }
 }
 
-pub fn pinned(pin: &PinRecord, x: Vec3, since_s: f32) -> bool {
+pub fn pinned(pin: &PinRecord, layer: u32, x: Vec3, since_s: f32) -> bool {
     let way = x - (Vec3::from_slice(&pin.shift) + Vec3::from_slice(&pin.velocity) * since_s);
     let turn = Mat3::from_cols_array_2d(&pin.turn.map(|[x, y, z, _]| [x, y, z]));
-    let x = turn.inverse() * way + Vec3::from_slice(&pin.centre);
-    let shape = ColliderRecord { at: pin.at, shape: pin.shape, surface: [0.0; 4] };
-    x.cmpge(Vec3::from_slice(&pin.low)).all() && x.cmple(Vec3::from_slice(&pin.high)).all() && shape.touch(x).distance_m <= 0.0
+    pin.layer == layer && pin.surrounds(turn.inverse() * way + Vec3::from_slice(&pin.centre))
 }
 
 fn respond(v: Vec3, mark: u32, x: Vec3, around: &Surroundings, dt_s: f32) -> Vec3 {
