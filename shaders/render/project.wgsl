@@ -65,8 +65,14 @@ fn project(g: u32) -> Cover {
     let size = rectangle.zw;
     if (size.x == 0u || size.y == 0u) { return NO_COVER; }
 
-    let look = turn_back(geometry[4u * g + 3u], normalize(mean.xyz - frame.eye));
-    let raw = colour_from_sh(g, frame.count, frame.sh_degree, look) + 0.5;
+    let look = normalize(mean.xyz - frame.eye);
+    let turn = geometry[4u * g + 3u];
+    var raw: vec3<f32>;
+    if (last.w > 0.0) {
+        raw = lit(SH_C0 * sh[g].xyz + 0.5, turn.xyz, last.w - 1.0, look);
+    } else {
+        raw = colour_from_sh(g, frame.count, frame.sh_degree, turn_back(turn, look)) + 0.5;
+    }
     if (!(all(abs(raw) < vec3<f32>(FAR)) && abs(last.z) < FAR)) { return NO_COVER; }
     let colour = max(raw, vec3<f32>(0.0)) * last.z;
 

@@ -10,14 +10,19 @@ var<workgroup> shared_bounds: array<atomic<u32>, 6>;
 
 @compute @workgroup_size(BOUNDS_GROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    if id.x < params.count {
-        var low = geometry[caster[id.x] * 4u].xyz;
-        var high = low;
-        for (var i = id.x + BOUNDS_GROUP * BOUNDS_GROUPS; i < params.count; i += BOUNDS_GROUP * BOUNDS_GROUPS) {
-            let p = geometry[caster[i] * 4u].xyz;
-            low = min(low, p);
-            high = max(high, p);
+    var found = false;
+    var low = vec3(0.0);
+    var high = vec3(0.0);
+    for (var i = id.x; i < params.count; i += BOUNDS_GROUP * BOUNDS_GROUPS) {
+        let p = geometry[caster[i] * 4u];
+        // What is not seen casts nothing, wherever it is.
+        if p.w > 0.0 {
+            low = select(p.xyz, min(low, p.xyz), found);
+            high = select(p.xyz, max(high, p.xyz), found);
+            found = true;
         }
+    }
+    if found {
         for (var axis = 0u; axis < 3u; axis++) {
             atomicMax(&shared_bounds[axis], ordered(high[axis]));
             atomicMax(&shared_bounds[axis + 3u], ordered(-low[axis]));

@@ -22,8 +22,9 @@ fn ordered(v: f32) -> u32 {
     return select(b | 0x80000000u, ~b, b >> 31u == 1u);
 }
 
+// Of 0, which no float has, 0: nothing is seen.
 fn from_ordered(k: u32) -> f32 {
-    return bitcast<f32>(select(~k, k & 0x7fffffffu, k >> 31u == 1u));
+    return bitcast<f32>(select(select(~k, k & 0x7fffffffu, k >> 31u == 1u), 0u, k == 0u));
 }
 
 /// Lays the map around the casters: a square with a margin for the penumbra. Its texel grows in

@@ -7,7 +7,7 @@ struct Delta {
     z: vec4<f32>,
 }
 
-/// As it lies in memory: t, then G - I row by row as nine halves, and 1 where shapes are lost: what a frame of motion has
+/// As it lies in memory: t, then G - I row by row as nine halves, and how it flows: what a frame of motion has
 /// of it, with t for the place.
 struct PackedDelta {
     a: vec4<u32>,

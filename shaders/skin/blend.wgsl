@@ -16,12 +16,9 @@ var<immediate> params: Immediates;
 @group(0) @binding(2) var<storage, read> weight: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> delta: array<PackedDelta>;
 @group(0) @binding(4) var<storage, read> rest: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> geometry: array<vec4<f32>>;
-/// How far each moving Gaussian has lost its shape, 0 to 1; below 0 where it keeps it whatever happens.
-@group(0) @binding(6) var<storage, read_write> loose: array<f32>;
-
-/// Share of a Gaussian's weight whose particles went elsewhere.
-var<private> left: f32 = 0.0;
+/// How far each particle that is drawn itself has parted from those around it, 0 to 1; a single 0 where none are.
+@group(0) @binding(5) var<storage, read> parted: array<f32>;
+@group(0) @binding(6) var<storage, read_write> geometry: array<vec4<f32>>;
 
 fn delta_of(i: u32) -> Delta {
     return unpacked(delta[i]);
@@ -69,7 +66,6 @@ fn together(slot: u32, centre: vec3<f32>, there: vec3<f32>) -> Delta {
         sum = joined_near(sum, &total, i.z, w.z, centre, there);
         sum = joined_near(sum, &total, i.w, w.w, centre, there);
     }
-    left = 1.0 - total;
     return Delta(sum.x / total, sum.y / total, sum.z / total);
 }
 
@@ -126,7 +122,10 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     let at = moving[slot] * 4u;
     let centre = rest[at];
     let d = blended(slot, centre.xyz - params.origin);
-    loose[slot] = select(-1.0, smoothstep(LEFT_LOW, LEFT_HIGH, left), !PAPER && sheds(particle[slot * VECTORS].x));
+    var seen = 1.0;
+    if !PAPER && sheds(particle[slot * VECTORS].x) {
+        seen -= smoothstep(FADES_LOW, FADES_HIGH, parted[min(particle[slot * VECTORS].x, arrayLength(&parted) - 1u)]);
+    }
     var a = rest[at + 1u];
     var b = rest[at + 2u];
     var turn = rest[at + 3u];
@@ -148,7 +147,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     if !PAPER {
         moved = moved_by(d, centre.xyz - params.origin);
     }
-    geometry[at] = vec4(centre.xyz + moved, centre.w);
+    geometry[at] = vec4(centre.xyz + moved, centre.w * seen);
     geometry[at + 1u] = a;
     geometry[at + 2u] = b;
     geometry[at + 3u] = turn;

@@ -7,7 +7,7 @@ struct Immediates {
 }
 var<immediate> params: Immediates;
 
-/// (x, y, z, G - I as nine halves, 1 where shapes are lost), 32 bytes.
+/// (x, y, z, G - I as nine halves, how it flows), 32 bytes.
 @group(0) @binding(0) var<storage, read> motion: array<PackedDelta>;
 /// Captured positions, relative to the origin.
 @group(0) @binding(1) var<storage, read> rest_particle: array<vec4<f32>>;

@@ -3,7 +3,8 @@
 struct Principal {
     // Descending.
     values: vec3<f32>,
-    // Unit vector of the least.
+    // Unit vectors of the largest and of the least.
+    most: vec3<f32>,
     least: vec3<f32>,
 }
 
@@ -19,11 +20,17 @@ fn principal(matrix: mat3x3<f32>) -> Principal {
     let e = vec3(s[0].x, s[1].y, s[2].z);
     let most = max(e.x, max(e.y, e.z));
     let least = min(e.x, min(e.y, e.z));
-    var axis = v[0];
-    if e.z == least {
-        axis = v[2];
-    } else if e.y == least {
-        axis = v[1];
+    var long = v[0];
+    if e.z == most {
+        long = v[2];
+    } else if e.y == most {
+        long = v[1];
     }
-    return Principal(vec3(most, e.x + e.y + e.z - most - least, least) * size, axis);
+    var short = v[0];
+    if e.z == least {
+        short = v[2];
+    } else if e.y == least {
+        short = v[1];
+    }
+    return Principal(vec3(most, e.x + e.y + e.z - most - least, least) * size, long, short);
 }

@@ -1,5 +1,5 @@
 // What others see of the particles, in their original order: position, visual deformation
-// G as halves of G - I, whether it keeps no shape, velocity, and the volume ratio. G = F F0^-1, or what is shown instead where F
+// G as halves of G - I, how it flows, velocity, and the volume ratio. G = F F0^-1, or what is shown instead where F
 // forgets.
 
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -31,9 +31,14 @@ fn tidy(value: f32) -> f32 {
     return clamp(round(value * 16384.0) * (1.0 / 16384.0), -1000.0, 1000.0);
 }
 
-// Whether the shape of its Gaussians means nothing any more once they part.
-fn sheds_shape(kind: u32) -> bool {
-    return kind == LIQUID || kind == SPH_LIQUID || kind == SAND || kind == SNOW || kind == VISCOPLASTIC;
+// What keeps no shape: 1 for grains, 2 for pastes, 3 for liquids, else 0. See `Flow`.
+fn flow(kind: u32) -> f32 {
+    switch (kind) {
+        case SAND, SNOW: { return 1.0; }
+        case VISCOPLASTIC: { return 2.0; }
+        case LIQUID, SPH_LIQUID: { return 3.0; }
+        default: { return 0.0; }
+    }
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -61,7 +66,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         pack2x16float(vec2<f32>(a.z, b.x)),
         pack2x16float(b.yz),
         pack2x16float(c.xy),
-        pack2x16float(vec2<f32>(c.z, select(0.0, 1.0, sheds_shape(s.kind)))),
+        pack2x16float(vec2<f32>(c.z, flow(s.kind))),
     );
     velocity[particle] = vec4<f32>(kinematics[n + i].xyz, volume_ratio(s, matter[3u * n + i].w, determinant(elastic)));
 }

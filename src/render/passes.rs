@@ -1,6 +1,6 @@
 //! The renderer's passes: their text, what they bind, their compiled form.
 
-use super::profile::{CORRELATION_MAX, DEPTH_BITS, EXPONENT_SLACK, FAR, OPACITY_MAX, POOL_TONE, REACH_SLACK, VARIANCE_MAX};
+use super::profile::{CORRELATION_MAX, DEPTH_BITS, EXPONENT_SLACK, FAR, LIT_LOOK, OPACITY_MAX, POOL_TONE, REACH_SLACK, VARIANCE_MAX};
 use super::shadow;
 use crate::gpu::{Access, Constant, ExtentPass, Gpu, Kernel, KernelSource, RadixSort, Scan, THREADS, Tier};
 use std::sync::OnceLock;
@@ -9,6 +9,7 @@ const FRAME: (&str, &str) = ("render/frame.wgsl", include_str!("../../shaders/re
 const SPLAT: (&str, &str) = ("render/splat.wgsl", include_str!("../../shaders/render/splat.wgsl"));
 const REACH: (&str, &str) = ("render/reach.wgsl", include_str!("../../shaders/render/reach.wgsl"));
 const SH: (&str, &str) = ("render/sh.wgsl", include_str!("../../shaders/render/sh.wgsl"));
+const LIT: (&str, &str) = ("render/lit.wgsl", include_str!("../../shaders/render/lit.wgsl"));
 const PROJECT: (&str, &str) = ("render/project.wgsl", include_str!("../../shaders/render/project.wgsl"));
 const COMPACT: (&str, &str) = ("render/compact.wgsl", include_str!("../../shaders/render/compact.wgsl"));
 const GATHER: (&str, &str) = ("render/gather.wgsl", include_str!("../../shaders/render/gather.wgsl"));
@@ -96,6 +97,23 @@ fn source(label: &'static str, parts: &[(&'static str, &'static str)], bindings:
         ("LOG2_E", Constant::F32(std::f32::consts::LOG2_E)),
         ("DEPTH_BITS", Constant::U32(DEPTH_BITS)),
     ]);
+    if parts.contains(&LIT) {
+        let [x, y, z] = LIT_LOOK.window;
+        let look = [
+            ("LIT_BELOW", LIT_LOOK.matt[0]),
+            ("LIT_ABOVE", LIT_LOOK.matt[1]),
+            ("MIRROR", LIT_LOOK.mirror),
+            ("ROOM_BELOW", LIT_LOOK.room[0]),
+            ("ROOM_ABOVE", LIT_LOOK.room[1]),
+            ("WINDOW", LIT_LOOK.window_light),
+            ("WINDOW_EDGE", LIT_LOOK.window_edge[0]),
+            ("WINDOW_CORE", LIT_LOOK.window_edge[1]),
+            ("WINDOW_X", x),
+            ("WINDOW_Y", y),
+            ("WINDOW_Z", z),
+        ];
+        constants.extend(look.map(|(name, value)| (name, Constant::F32(value))));
+    }
     KernelSource { label, entry: "main", parts: parts.to_vec(), constants, bindings: bindings.to_vec(), immediate_bytes: 0 }
 }
 
@@ -103,7 +121,7 @@ fn source(label: &'static str, parts: &[(&'static str, &'static str)], bindings:
 fn sources() -> [KernelSource; 5] {
     let (r, w) = (Access::Read, Access::Write);
     [
-        source("render.project", &[FRAME, SPLAT, REACH, SH, PROJECT], &[r, r, r, w, w, w, w]),
+        source("render.project", &[FRAME, SPLAT, REACH, SH, LIT, PROJECT], &[r, r, r, w, w, w, w]),
         source("render.compact", &[FRAME, COMPACT], &[r, r, r, r, r, w, w]),
         source("render.gather", &[FRAME, GATHER], &[r, r, r, w]),
         source("render.emit", &[FRAME, SPLAT, REACH, EMIT], &[r, r, r, r, r, r, w, w]),

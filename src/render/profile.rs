@@ -88,3 +88,24 @@ pub const DEPTH_BITS: u32 = 24;
 pub const INRIA_TILE: u32 = 16;
 /// How much darker the plain ground is under the object than the background.
 pub const POOL_TONE: f32 = 0.16;
+
+/// The light on what has none captured: matter that is drawn as its particles (`lit.wgsl`).
+#[derive(Clone, Copy, Debug)]
+pub struct LitLook {
+    /// Factor on the colour of what faces down, and up.
+    pub matt: [f32; 2],
+    /// Share that a shining surface mirrors of what is straight before it: of water (n - 1)^2 / (n + 1)^2 = 0.02.
+    pub mirror: f32,
+    /// Light of the room below and above, display-referred.
+    pub room: [f32; 2],
+    /// Towards the window, of unit length.
+    pub window: [f32; 3],
+    /// Its light over the room's.
+    pub window_light: f32,
+    /// Cosines to its middle at which its soft edge begins, and at which it is whole.
+    pub window_edge: [f32; 2],
+}
+
+/// See [`LitLook`].
+pub const LIT_LOOK: LitLook =
+    LitLook { matt: [0.7, 1.12], mirror: 0.03, room: [0.30, 0.95], window: [-0.566, 0.170, 0.807], window_light: 4.0, window_edge: [0.8, 0.98] };

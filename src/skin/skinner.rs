@@ -1,6 +1,6 @@
 //! The two passes that move Gaussians with their particles.
 
-use super::cover::{self, Cover};
+use super::body::{self, Body, Filling};
 use super::{Bound, STATIC, Splats};
 use crate::gpu::{Access, Constant, Gpu, GpuError, Kernel, KernelSource, Recording};
 use crate::spec::Weights;
@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Version of what skinning computes; part of the keys of pictures.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// Threads of a workgroup.
 const GROUP_SIZE: u32 = 128;
@@ -19,6 +19,10 @@ pub const STRETCH: [f32; 2] = [0.3, 3.0];
 
 /// Below this determinant a blended gradient has no rotation worth the name.
 pub const SMALLEST_DETERMINANT: f32 = 1e-3;
+
+/// How far the nearest particle of a Gaussian, where it is drawn itself, has parted from those around it when the Gaussian begins
+/// to fade, and when it is gone.
+pub const FADES: [f32; 2] = [0.4, 1.0];
 
 /// Particles that carry a Gaussian's centre this far from where its nearest one does, in spans, begin
 /// to lose it, and at the second number have lost it. A span is what lies between the particles that a
@@ -31,7 +35,7 @@ pub const POLAR_STEPS: u32 = 16;
 /// Sweeps of Jacobi's method: three bring a 3x3 matrix to f32 precision.
 pub const JACOBI_SWEEPS: u32 = 4;
 
-/// What both passes receive.
+/// What the two passes over captured Gaussians receive.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct Immediates {
@@ -48,11 +52,10 @@ pub struct Skinner {
     delta: Kernel,
     blend: Kernel,
     blend_bindings: wgpu::BindGroup,
+    bound: Uploaded,
     rest_particles: wgpu::Buffer,
     deltas: wgpu::Buffer,
-    loose: wgpu::Buffer,
-    moving: wgpu::Buffer,
-    cover: Option<Cover>,
+    body: Option<Body>,
     particles: Immediates,
     gaussians: Immediates,
 }
@@ -67,31 +70,34 @@ impl Skinner {
         let relative: Vec<[f32; 4]> = rest_particles.iter().map(|&p| (p - origin).extend(0.0).to_array()).collect();
         let deltas = gpu.storage::<[u32; 8]>("skin.deltas", rest_particles.len())?;
         let blend = gpu.kernel(&blend_source(packed.vectors, weights));
-        let moving = gpu.storage_from("skin.moving", &packed.moving)?;
-        let index = gpu.storage_from("skin.particle", &packed.index)?;
-        let weight = gpu.storage_from("skin.weight", &packed.weight)?;
-        let loose = gpu.storage::<f32>("skin.loose", packed.moving.len())?;
-        let buffers = [&moving, &index, &weight, &deltas, &splats.rest, &splats.geometry, &loose];
+        let bound = Uploaded {
+            moving: gpu.storage_from("skin.moving", &packed.moving)?,
+            index: gpu.storage_from("skin.particle", &packed.index)?,
+            weight: gpu.storage_from("skin.weight", &packed.weight)?,
+        };
+        let whole = gpu.storage_from("skin.whole", &[0.0f32])?;
         Ok(Skinner {
             delta: gpu.kernel(&delta_source(weights)),
-            blend_bindings: gpu.bind(&blend, &buffers),
+            blend_bindings: bound.bind(gpu, &blend, splats, &deltas, &whole),
             blend,
+            bound,
             rest_particles: gpu.storage_from("skin.rest_particles", &relative)?,
             deltas,
-            loose,
-            moving,
-            cover: None,
+            body: None,
             particles: Immediates { count: rest_particles.len() as u32, ..shared },
             gaussians: Immediates { count: packed.moving.len() as u32, ..shared },
             gpu: gpu.clone(),
         })
     }
 
-    /// Readies it for matter that keeps no shape, liquids and grains, of which the motion tells. Without this
-    /// Gaussians of such matter go on as their particles turn and stretch.
-    pub fn shed(&mut self, splats: &Splats) -> Result<(), GpuError> {
-        if self.cover.is_none() && self.gaussians.count > 0 && self.particles.count > 0 {
-            self.cover = Some(Cover::new(&self.gpu, splats, &self.moving, &self.loose, &self.gaussians)?);
+    /// Readies it for matter that keeps no shape, liquids and grains, of which the motion tells: its particles are drawn once
+    /// they part, as the last Gaussians of `splats`, and captured Gaussians fade where they do. Without this those go on as
+    /// their particles turn and stretch.
+    pub fn fill(&mut self, splats: &Splats, filling: &Filling) -> Result<(), GpuError> {
+        if self.particles.count > 0 && filling.rest_m.len() == self.particles.count as usize {
+            let body = Body::new(&self.gpu, splats, filling, Vec3::from(self.particles.origin))?;
+            self.blend_bindings = self.bound.bind(&self.gpu, &self.blend, splats, &self.deltas, &body.parted);
+            self.body = Some(body);
         }
         Ok(())
     }
@@ -99,15 +105,30 @@ impl Skinner {
     /// Records the passes that read `motion` (8 u32 a particle, see the solver) and write `Splats::geometry`
     /// of the Gaussians that follow particles. Static Gaussians are not touched.
     pub fn record(&self, motion: &wgpu::Buffer, recording: &mut Recording) {
+        if let Some(body) = &self.body {
+            body.record(&self.gpu, motion, &self.rest_particles, recording);
+        }
         if self.gaussians.count == 0 || self.particles.count == 0 {
             return;
         }
         let bindings = self.gpu.bind(&self.delta, &[motion, &self.rest_particles, &self.deltas]);
         recording.dispatch_with(&self.delta, &bindings, &self.particles, groups(self.particles.count));
         recording.dispatch_with(&self.blend, &self.blend_bindings, &self.gaussians, groups(self.gaussians.count));
-        if let Some(cover) = &self.cover {
-            cover.record(&self.gaussians, recording);
-        }
+    }
+}
+
+/// The binding on the device.
+#[derive(Debug)]
+struct Uploaded {
+    moving: wgpu::Buffer,
+    index: wgpu::Buffer,
+    weight: wgpu::Buffer,
+}
+
+impl Uploaded {
+    /// What the pass over Gaussians reads and writes; `parted` is of particles that are drawn themselves, or a single 0.
+    fn bind(&self, gpu: &Gpu, blend: &Kernel, splats: &Splats, deltas: &wgpu::Buffer, parted: &wgpu::Buffer) -> wgpu::BindGroup {
+        gpu.bind(blend, &[&self.moving, &self.index, &self.weight, deltas, &splats.rest, parted, &splats.geometry])
     }
 }
 
@@ -162,7 +183,7 @@ pub(super) fn groups(count: u32) -> [u32; 3] {
     [groups.div_ceil(rows), rows, 1]
 }
 
-const AFFINE: (&str, &str) = ("skin/affine.wgsl", include_str!("../../shaders/skin/affine.wgsl"));
+pub(super) const AFFINE: (&str, &str) = ("skin/affine.wgsl", include_str!("../../shaders/skin/affine.wgsl"));
 const DELTA: (&str, &str) = ("skin/delta.wgsl", include_str!("../../shaders/skin/delta.wgsl"));
 pub(super) const ROTATION: (&str, &str) = ("skin/rotation.wgsl", include_str!("../../shaders/skin/rotation.wgsl"));
 const BLEND: (&str, &str) = ("skin/blend.wgsl", include_str!("../../shaders/skin/blend.wgsl"));
@@ -184,7 +205,7 @@ fn blend_source(vectors: u32, weights: Weights) -> KernelSource {
         entry: "main",
         parts: vec![AFFINE, ROTATION, BLEND],
         constants: [constants(), vec![("VECTORS", Constant::U32(vectors)), ("PAPER", Constant::Bool(weights == Weights::Paper))]].concat(),
-        bindings: [[Access::Read; 5].as_slice(), &[Access::Write, Access::Write]].concat(),
+        bindings: [[Access::Read; 6].as_slice(), &[Access::Write]].concat(),
         immediate_bytes: size_of::<Immediates>() as u32,
     }
 }
@@ -194,8 +215,8 @@ pub(super) fn constants() -> Vec<(&'static str, Constant)> {
         ("GROUP_SIZE", Constant::U32(GROUP_SIZE)),
         ("PART_LOW", Constant::F32(PART[0])),
         ("PART_HIGH", Constant::F32(PART[1])),
-        ("LEFT_LOW", Constant::F32(cover::LEFT[0])),
-        ("LEFT_HIGH", Constant::F32(cover::LEFT[1])),
+        ("FADES_LOW", Constant::F32(FADES[0])),
+        ("FADES_HIGH", Constant::F32(FADES[1])),
         ("STRETCH_LOW", Constant::F32(STRETCH[0])),
         ("STRETCH_HIGH", Constant::F32(STRETCH[1])),
         ("SMALLEST_DETERMINANT", Constant::F32(SMALLEST_DETERMINANT)),
@@ -212,7 +233,7 @@ pub fn prepare(gpu: &Gpu, weights: Weights) {
 /// Every pass of this room, in the forms that K = 8 and both kinds of weights give.
 pub fn kernels() -> Vec<KernelSource> {
     let weighed = [Weights::Exact, Weights::Paper].into_iter().flat_map(|weights| [delta_source(weights), blend_source(2, weights)]);
-    weighed.chain(cover::sources()).collect()
+    weighed.chain(body::sources()).collect()
 }
 
 /// All WGSL of this room, for the keys of stages.

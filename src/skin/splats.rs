@@ -7,7 +7,8 @@ use glam::Quat;
 /// Buffers of one scene's Gaussians. `geometry` is four vec4 a Gaussian, interleaved:
 /// (mean, opacity), (cov xx, xy, xz, yy), (cov yz, zz, shade, 0), (quaternion x, y, z, w that turns
 /// the frame of the spherical harmonics into the world). World frame, metres. `shade` is the factor
-/// of the contact shadow, 1 where there is none.
+/// of the contact shadow, 1 where there is none. Particles that are drawn themselves have in place of that 0 one more than how much
+/// they shine, and in place of the quaternion the way out of their surface, longer the more it is one, to 1.
 #[derive(Clone, Debug)]
 pub struct Splats {
     /// How many.
@@ -25,14 +26,16 @@ pub struct Splats {
 }
 
 impl Splats {
-    /// Uploads Gaussians of the world's frame whose spherical harmonics are turned by `world_from_sh`.
+    /// Uploads Gaussians of the world's frame whose spherical harmonics are turned by `world_from_sh`. What `object` has past
+    /// them is room for more, which are not seen until something writes them.
     pub fn new(gpu: &Gpu, gaussians: &Gaussians, world_from_sh: Quat, object: &[u32]) -> Result<Splats, GpuError> {
-        let geometry: Vec<[f32; 16]> = (0..gaussians.len()).map(|i| record(gaussians, i, world_from_sh)).collect();
+        let mut geometry: Vec<[f32; 16]> = (0..gaussians.len()).map(|i| record(gaussians, i, world_from_sh)).collect();
+        geometry.resize(object.len().max(gaussians.len()), [0.0; 16]);
         Ok(Splats {
-            count: gaussians.len() as u32,
+            count: geometry.len() as u32,
             rest: gpu.storage_from("splats.rest", &geometry)?,
             geometry: gpu.storage_from("splats.geometry", &geometry)?,
-            sh: gpu.storage_from("splats.sh", &planes(gaussians))?,
+            sh: gpu.storage_from("splats.sh", &planes(gaussians, geometry.len()))?,
             sh_degree: gaussians.sh_degree,
             object: gpu.storage_from("splats.object", object)?,
         })
@@ -47,8 +50,8 @@ fn record(gaussians: &Gaussians, index: usize, turn: Quat) -> [f32; 16] {
 }
 
 /// Interleaved coefficients to planes of vec4, so that neighbouring lanes read neighbouring words.
-fn planes(gaussians: &Gaussians) -> Vec<[f32; 4]> {
-    let (count, floats) = (gaussians.len(), gaussians.sh_coefficients() * 3);
+fn planes(gaussians: &Gaussians, count: usize) -> Vec<[f32; 4]> {
+    let floats = gaussians.sh_coefficients() * 3;
     let mut planes = vec![[0.0; 4]; floats.div_ceil(4) * count];
     for (g, coefficients) in gaussians.sh.chunks_exact(floats).enumerate() {
         for (f, value) in coefficients.iter().enumerate() {

@@ -1,6 +1,5 @@
 //! Skinning in plain Rust: what the two passes compute, one particle or Gaussian at a time.
 
-use super::cover::LEFT;
 use super::skinner::{PART, POLAR_STEPS, SMALLEST_DETERMINANT, STRETCH};
 use super::{Bound, STATIC};
 use crate::spec::Weights;
@@ -116,14 +115,6 @@ fn parted(rest: &[f32; 16], index: &[u32], weight: &[f32], deltas: &[Delta], fra
     let spans = |i: u32| (deltas[i as usize].carry(c) - there).length() / frame.span_m;
     let parts = index.iter().zip(weight).any(|(&i, &w)| w > 0.0 && spans(i) > PART[0]);
     parts.then(|| index.iter().zip(weight).map(|(&i, w)| w * (1.0 - smoothstep(PART, spans(i)))).collect())
-}
-
-/// How far a Gaussian whose matter keeps no shape has lost its own, 0 to 1.
-pub fn loose(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta], frame: Frame) -> f32 {
-    let k = bound.neighbours as usize;
-    let slots = gaussian * k..(gaussian + 1) * k;
-    let kept = parted(rest, &bound.index[slots.clone()], &bound.weight[slots], deltas, frame);
-    smoothstep(LEFT, 1.0 - kept.map_or(1.0, |kept| kept.iter().sum()))
 }
 
 /// Turns and stretches a record's covariance and the frame of its spherical harmonics.

@@ -221,7 +221,7 @@ impl Solver {
     }
 
     /// 8 u32 a particle in the original order: x, y, z as f32 bits; then nine f16 of G - I by rows; the
-    /// last half is 1 where matter keeps no shape, else 0. G = F F0^-1, or for laws whose F forgets all that happened, within bounds. Written by [`Solver::record_frame`].
+    /// last half is 0 where matter keeps its shape, else how it flows ([`super::Flow`]). G = F F0^-1, or for laws whose F forgets all that happened, within bounds. Written by [`Solver::record_frame`].
     pub fn motion(&self) -> &wgpu::Buffer {
         &self.motion
     }

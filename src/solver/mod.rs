@@ -53,7 +53,7 @@ pub use checkpoint::Checkpoint;
 pub use core::Solver;
 pub use fields::velocity_change;
 pub use impact::Sight;
-pub use substance::{Activation, Substance, liquid_bulk_pa};
+pub use substance::{Activation, Flow, Substance, liquid_bulk_pa};
 pub use types::{
     Advance, Collider, Field, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError, Taut,
 };
@@ -83,4 +83,4 @@ pub fn shader_text() -> String {
 }
 
 /// Raised whenever the same input gives other bits.
-pub const VERSION: u32 = 26;
+pub const VERSION: u32 = 27;

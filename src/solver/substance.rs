@@ -6,6 +6,17 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
+/// How matter that keeps no shape flows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// Grains stay themselves: sand, snow.
+    Grains = 1,
+    /// Thick and dull, its colours mix: mud, jam.
+    Paste = 2,
+    /// Has a skin that shines, its colours mix.
+    Liquid = 3,
+}
+
 /// A constitutive law and its numbers. Moduli and density are each particle's own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Substance {
@@ -177,12 +188,19 @@ impl Substance {
         }
     }
 
+    /// How what keeps no shape flows, as `frame.wgsl` says it of each particle; none where it keeps it.
+    pub fn flow(&self) -> Option<Flow> {
+        match self {
+            Substance::Sand { .. } | Substance::Snow { .. } => Some(Flow::Grains),
+            Substance::Viscoplastic { .. } => Some(Flow::Paste),
+            Substance::Liquid { .. } | Substance::SphLiquid { .. } => Some(Flow::Liquid),
+            _ => None,
+        }
+    }
+
     /// Whether the shape of its Gaussians means nothing any more once they part.
     pub fn sheds_shape(&self) -> bool {
-        matches!(
-            self,
-            Substance::Liquid { .. } | Substance::SphLiquid { .. } | Substance::Sand { .. } | Substance::Snow { .. } | Substance::Viscoplastic { .. }
-        )
+        self.flow().is_some()
     }
 
     /// Whether it flows without any shear modulus.

@@ -56,11 +56,7 @@ impl Engine {
             let solids = self.solids(spec, &ready)?;
             let bound = self.bound(spec, &ready, &solids.value)?;
             let matter = matter(spec, &ready.prepared.value, &solids.value);
-            let mut figure = Figure::new(&gpu, &ready.prepared.value, &bound.value, &matter.particles.position_m, spec.skin.weights)?;
-            if matter.sheds_shape() {
-                figure.shed()?;
-            }
-            figure
+            Figure::new(&gpu, &ready.prepared.value, &bound.value, &matter, spec.skin.weights)?
         };
         Ok(Player {
             frames: segments.last().map_or(0, |last| last.last + 1),

@@ -125,17 +125,13 @@ fn warnings(ready: &Ready, solids: &[crate::proxy::Solid], matter: &Matter) -> V
 
 /// The figure of the last run where it is of the same binding, else a new one.
 fn take_figure(engine: &mut Engine, spec: &Spec, ready: &Ready, bound: &crate::skin::Bound, matter: &Matter) -> Result<Figure, EngineError> {
-    let mut figure = match engine.figure.take() {
-        Some((key, figure)) if key == ready.keys.bind => figure,
+    match engine.figure.take() {
+        Some((key, figure)) if key == ready.keys.bind && figure.suits(matter) => Ok(figure),
         _ => {
             let gpu = engine.device()?.clone();
-            Figure::new(&gpu, &ready.prepared.value, bound, &matter.particles.position_m, spec.skin.weights)?
+            Ok(Figure::new(&gpu, &ready.prepared.value, bound, matter, spec.skin.weights)?)
         }
-    };
-    if matter.sheds_shape() {
-        figure.shed()?;
     }
-    Ok(figure)
 }
 
 /// Pictures that the store has.

@@ -1,10 +1,11 @@
 //! What is seen: Gaussians, the motion that moves them, their shadow, the renderer.
 
+use super::bodies::Matter;
 use super::{Prepared, camera};
 use crate::gpu::{Gpu, GpuError, Recording};
 use crate::render::shadow::Shadow;
 use crate::render::{GroundLook, Picture, RenderOptions, Renderer, View};
-use crate::skin::{Bound, Skinner, Splats};
+use crate::skin::{Bound, Filling, Skinner, Splats};
 use crate::spec::{Camera, Weights};
 use glam::Vec3;
 
@@ -27,30 +28,45 @@ pub struct Figure {
 #[derive(Debug)]
 struct Moved {
     skinner: Skinner,
+    /// Whether particles of what keeps no shape are drawn themselves.
+    filled: bool,
     /// Motion of a frame that comes from the store.
     replayed: wgpu::Buffer,
 }
 
 impl Figure {
-    /// Uploads a scene and binds it to particles in the captured pose.
-    pub fn new(gpu: &Gpu, prepared: &Prepared, bound: &Bound, rest_m: &[Vec3], weights: Weights) -> Result<Figure, GpuError> {
-        let mut figure = Figure::captured(gpu, prepared)?;
-        let skinner = Skinner::new(gpu, &figure.splats, bound, rest_m, weights)?;
-        figure.moved = Some(Moved { skinner, replayed: gpu.storage::<[u32; 8]>("figure.replayed", rest_m.len())? });
+    /// Uploads a scene and binds it to matter in the captured pose.
+    pub fn new(gpu: &Gpu, prepared: &Prepared, bound: &Bound, matter: &Matter, weights: Weights) -> Result<Figure, GpuError> {
+        let particles = &matter.particles;
+        let rest_m = &particles.position_m;
+        let filling =
+            matter.sheds_shape().then(|| Filling::new(&prepared.gaussians, &prepared.object_of, rest_m, &particles.volume_m3, &particles.object));
+        let mut figure = Figure::with_room(gpu, prepared, filling.as_ref().map_or(&[], |_| &particles.object))?;
+        let mut skinner = Skinner::new(gpu, &figure.splats, bound, rest_m, weights)?;
+        if let Some(filling) = &filling {
+            skinner.fill(&figure.splats, filling)?;
+        }
+        figure.moved = Some(Moved { skinner, filled: filling.is_some(), replayed: gpu.storage::<[u32; 8]>("figure.replayed", rest_m.len())? });
         Ok(figure)
     }
 
-    /// Readies it for matter that keeps no shape; see [`Skinner::shed`].
-    pub fn shed(&mut self) -> Result<(), GpuError> {
-        self.moved.as_mut().map_or(Ok(()), |moved| moved.skinner.shed(&self.splats))
+    /// Whether it can show such matter: particles of what keeps no shape are drawn themselves.
+    pub fn suits(&self, matter: &Matter) -> bool {
+        !matter.sheds_shape() || self.moved.as_ref().is_some_and(|moved| moved.filled)
     }
 
     /// Uploads a scene in the captured pose; nothing can move it.
     pub fn captured(gpu: &Gpu, prepared: &Prepared) -> Result<Figure, GpuError> {
-        let splats = Splats::new(gpu, &prepared.gaussians, prepared.world_from_sh, &prepared.object_of)?;
+        Figure::with_room(gpu, prepared, &[])
+    }
+
+    /// With as many more Gaussians, which are not seen yet, as objects that they belong to are given.
+    fn with_room(gpu: &Gpu, prepared: &Prepared, more: &[u32]) -> Result<Figure, GpuError> {
+        let object_of = [prepared.object_of.as_slice(), more].concat();
+        let splats = Splats::new(gpu, &prepared.gaussians, prepared.world_from_sh, &object_of)?;
         let (mut casters, mut receivers) = (Vec::new(), Vec::new());
-        for (index, (object, floater)) in (0u32..).zip(prepared.object_of.iter().zip(&prepared.floater)) {
-            match (*object, *floater) {
+        for (index, object) in (0u32..).zip(&object_of) {
+            match (*object, prepared.floater.get(index as usize).copied().unwrap_or(false)) {
                 (u32::MAX, _) => receivers.push(index),
                 (_, false) => casters.push(index),
                 _ => {}

@@ -20,7 +20,7 @@ pub struct MotionFrame {
     pub velocity_m_s: Vec<Vec3>,
 }
 
-/// Words of one particle in a motion buffer: three f32 of position, nine f16 of G - I, one that is 1 where it keeps no shape.
+/// Words of one particle in a motion buffer: three f32 of position, nine f16 of G - I, one that is above 0 where it keeps no shape.
 pub const MOTION_WORDS: usize = 8;
 
 impl MotionFrame {

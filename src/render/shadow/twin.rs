@@ -33,8 +33,9 @@ struct Map {
 impl ShadowTwin {
     /// Passes `bounds`, `splat`, `roof` and `pyramid`. `None` where nothing casts.
     pub fn new(casters: &[Record], receivers: &[Record], ground_m: Option<f32>) -> Option<ShadowTwin> {
-        let first = Vec3::from_slice(casters.first()?);
-        let (low, high) = casters.iter().fold((first, first), |(low, high), c| (low.min(Vec3::from_slice(c)), high.max(Vec3::from_slice(c))));
+        let casters: Vec<&Record> = casters.iter().filter(|c| c[3] > 0.0).collect();
+        let first = Vec3::from_slice(*casters.first()?);
+        let (low, high) = casters.iter().fold((first, first), |(low, high), c| (low.min(Vec3::from_slice(*c)), high.max(Vec3::from_slice(*c))));
         let map = Map::around(low, high, ground_m);
         let mut depth = vec![vec![0u32; (SIDE * SIDE) as usize]; LAYERS as usize];
         casters.iter().for_each(|caster| map.splat(caster, &mut depth));

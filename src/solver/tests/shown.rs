@@ -12,8 +12,8 @@ use glam::{Mat3, Quat, Vec3};
 /// G and the volume ratio of each particle, as a frame has them.
 fn frame(solver: &Solver) -> Vec<(Mat3, f32)> {
     for (m, state) in motion(solver).iter().zip(solver.states().expect("states")) {
-        let sheds = solver.laws.substances[state.substance()].sheds_shape();
-        assert_eq!(m[7] >> 16, if sheds { u32::from(half::f16::ONE.to_bits()) } else { 0 });
+        let flow = solver.laws.substances[state.substance()].flow().map_or(0.0, |flow| flow as u32 as f32);
+        assert_eq!(m[7] >> 16, u32::from(half::f16::from_f32(flow).to_bits()));
     }
     framed(solver)
 }

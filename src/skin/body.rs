@@ -1,0 +1,296 @@
+//! What is seen of matter that keeps no shape. Once particles part from those that were around them, they are drawn
+//! themselves: a Gaussian each, of the particle's volume, shaped by how its neighbours lie, coloured by the captured
+//! Gaussians that were nearest to it and, where it flows, by what it is stirred into.
+
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+pub(super) mod twin;
+
+use super::Splats;
+use super::neighbours::{Tree, nearest_of_all};
+use super::skinner::{self, AFFINE, ROTATION, groups};
+use crate::gpu::{Access, Constant, Extent, Gpu, GpuError, Kernel, KernelSource, RadixSort, Recording, SortBuffers};
+use crate::scene::Gaussians;
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+/// Particles that see each other are so near, in spacings.
+pub const REACH: f32 = 2.5;
+/// Particles whose leaving is watched, of each.
+pub const BESIDE: u32 = 8;
+/// Spacings that one of them is farther than it was when it begins to have left, and when it has.
+pub const GONE: [f32; 2] = [0.4, 1.0];
+/// The same of grains, which are seen to slide past each other.
+pub const GRAINS_GONE: [f32; 2] = [0.15, 0.5];
+/// Share of them that has left at which a particle begins to be seen, and has wholly parted.
+pub const PARTED: [f32; 2] = [0.05, 0.5];
+/// Standard deviation of a drop's Gaussian over the particle's size: at half of its opacity it ends where a ball of the volume does.
+pub const RADIUS: f32 = 0.53;
+/// A grain's over a drop's, so that grains stay apart to the eye.
+pub const GRAIN: f32 = 0.8;
+/// Size over the whole when it begins to be seen.
+pub const YOUNG: f32 = 0.6;
+/// How far parted it is when it is as opaque as it gets, and how opaque that is.
+pub const SEEN: f32 = 0.3;
+/// Opacity of what is drawn.
+pub const OPACITY: f32 = 0.97;
+/// Share of the volume around it that is a particle's own: from the first number on it begins to be alone, at the second it is.
+pub const ALONE: [f32; 2] = [0.5, 0.9];
+/// Volume around a particle of a sheet and of a thread of single particles a spacing apart, over its own: the integrals of
+/// (1 - r^2)^3 over a disc and a line of [`REACH`] spacings.
+pub const SHEET: f32 = std::f32::consts::FRAC_PI_4 * REACH * REACH;
+/// See [`SHEET`].
+pub const THREAD: f32 = 0.914_285_7 * REACH;
+/// Ratio of the two largest spreads up to which it is a thread, and from which it is not.
+pub const BROAD: [f32; 2] = [0.3, 0.7];
+/// A Gaussian becomes at most so many times wider, however its neighbours part.
+pub const WIDEST: f32 = 3.5;
+/// And no thinner than this share of its radius.
+pub const THINNEST: f32 = 0.15;
+/// Share of the volume around it that is its own from which on what lies up to two reaches away counts too, and alone counts.
+pub const FEW: [f32; 2] = [0.22, 0.4];
+/// The middle of what is around a particle of a surface lies so far from it, in reaches: 0.246 if the surface passed through it,
+/// less as it lies half a spacing below.
+pub const SKIN: f32 = 0.14;
+/// At a surface it is so much wider, and thinner by the square of that.
+pub const FLAT: f32 = 1.15;
+/// Share by which what sticks out of a surface is drawn in.
+pub const EVEN: f32 = 0.8;
+/// Ratio of the two least spreads, squared, up to which it is a sheet whose way out is across it, and from which it is a body's surface.
+pub const THIN: [f32; 2] = [0.08, 0.25];
+/// Grains differ in tone by this share at most.
+pub const TONE: f32 = 0.14;
+/// Weight of its own colour among those of its neighbours that a particle is stirred into, by its volume 1.
+pub const OWN_COLOUR: f32 = 0.3;
+/// How much clearer a liquid is where it is thin: share of its opacity that it would lose where it is no more.
+pub const CLEAR: f32 = 0.6;
+/// How much a surface shines, over a mirror's share.
+pub const GLOSS: [f32; 2] = [0.35, 1.0];
+/// Of one key no more particles are looked at.
+const CROWD: u32 = 512;
+/// Captured Gaussians that a particle has its colour from.
+const COLOURS: usize = 16;
+/// The first spherical harmonic: a colour is 0.5 and this times its coefficient.
+pub(super) const SH_FIRST: f32 = 0.282_094_8;
+
+/// What both the host and the passes know.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Immediates {
+    origin: [f32; 3],
+    count: u32,
+    reach_m: f32,
+    spacing_m: f32,
+    first: u32,
+    mask: u32,
+}
+
+/// The particles of a scene as they are drawn.
+#[derive(Clone, Debug, Default)]
+pub struct Filling {
+    /// Captured positions, metres, world.
+    pub rest_m: Vec<Vec3>,
+    /// Colour of each, display-referred, from all sides alike, and its size in metres.
+    pub tint: Vec<[f32; 4]>,
+    /// [`BESIDE`] nearest particles of each of the same object; itself where there are fewer.
+    pub beside: Vec<u32>,
+    /// Distance between particles where they fill the room, metres.
+    pub spacing_m: f32,
+}
+
+impl Filling {
+    /// Of particles in the captured pose, with their volumes and the objects they belong to.
+    pub fn new(gaussians: &Gaussians, object_of: &[u32], rest_m: &[Vec3], volume_m3: &[f32], object: &[u32]) -> Filling {
+        let spacing_m = spacing_m(volume_m3);
+        let mut filling = Filling { rest_m: rest_m.to_vec(), tint: vec![[0.0; 4]; rest_m.len()], beside: Vec::new(), spacing_m };
+        filling.beside = (0..rest_m.len() as u32).flat_map(|i| std::iter::repeat_n(i, BESIDE as usize)).collect();
+        let mut own: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        (0..rest_m.len()).for_each(|i| own.entry(object[i]).or_default().push(i));
+        for (object, own) in own {
+            let seen = (0..gaussians.len()).filter(|&g| object_of[g] == object).map(|g| (gaussians.mean[g], g as u32));
+            filling.watch(&own);
+            filling.colour(&own, Tree::new(seen.collect()), gaussians);
+        }
+        for (tint, volume) in filling.tint.iter_mut().zip(volume_m3) {
+            tint[3] = volume.max(0.0).cbrt().clamp(0.4 * spacing_m, 1.5 * spacing_m);
+        }
+        filling
+    }
+
+    /// Finds the particles that are next to each of an object's.
+    fn watch(&mut self, own: &[usize]) {
+        let places: Vec<Vec3> = own.iter().map(|&i| self.rest_m[i]).collect();
+        let tree = Tree::new(own.iter().map(|&i| (self.rest_m[i], i as u32)).collect());
+        for (&i, nearest) in own.iter().zip(nearest_of_all(&tree, &places, BESIDE as usize + 1)) {
+            let others = nearest.found().iter().map(|found| found.1).filter(|&j| j != i as u32);
+            let slots = &mut self.beside[i * BESIDE as usize..(i + 1) * BESIDE as usize];
+            slots.iter_mut().zip(others).for_each(|(slot, j)| *slot = j);
+        }
+    }
+
+    /// Gives an object's particles the colours of what was captured nearest to them.
+    fn colour(&mut self, own: &[usize], seen: Tree, gaussians: &Gaussians) {
+        let places: Vec<Vec3> = own.iter().map(|&i| self.rest_m[i]).collect();
+        let floats = gaussians.sh_coefficients() * 3;
+        let near2 = self.spacing_m * self.spacing_m + f32::MIN_POSITIVE;
+        for (&i, nearest) in own.iter().zip(nearest_of_all(&seen, &places, COLOURS)) {
+            let (mut sum, mut total) = (Vec3::ZERO, 0.0);
+            for &(d2, g) in nearest.found() {
+                let weight = gaussians.opacity[g as usize] / (d2 + near2);
+                let seen = Vec3::from_slice(&gaussians.sh[g as usize * floats..]) * SH_FIRST + 0.5;
+                sum += seen.max(Vec3::ZERO) * weight;
+                total += weight;
+            }
+            let colour = if total > 0.0 { sum / total } else { Vec3::ZERO };
+            self.tint[i][..3].copy_from_slice(&colour.to_array());
+        }
+    }
+}
+
+/// The size that nine of ten particles do not pass: thin places are sampled with less.
+fn spacing_m(volume_m3: &[f32]) -> f32 {
+    let mut volumes = volume_m3.to_vec();
+    let at = volumes.len() * 9 / 10;
+    if volumes.is_empty() { 0.0 } else { volumes.select_nth_unstable_by(at, f32::total_cmp).1.cbrt().max(f32::MIN_POSITIVE) }
+}
+
+/// The passes and what they keep.
+#[derive(Debug)]
+pub(super) struct Body {
+    place: Kernel,
+    order: Kernel,
+    shape: Kernel,
+    shape_bindings: wgpu::BindGroup,
+    sort: Recording,
+    buffers: SortBuffers,
+    /// Which of the sort's buffers is sorted.
+    to: usize,
+    beside: wgpu::Buffer,
+    /// How far each particle has parted from those that were around it, 0 to 1.
+    pub parted: wgpu::Buffer,
+    spans: wgpu::Buffer,
+    sorted: wgpu::Buffer,
+    tint: wgpu::Buffer,
+    immediates: Immediates,
+}
+
+impl Body {
+    /// The last Gaussians of `splats` are those of the particles.
+    pub fn new(gpu: &Gpu, splats: &Splats, filling: &Filling, origin: Vec3) -> Result<Body, GpuError> {
+        let count = filling.rest_m.len() as u32;
+        let places = (2 * count).next_power_of_two().max(64);
+        let radix = RadixSort::new(gpu);
+        let buffers = radix.buffers(gpu, "skin.body_sort", count)?;
+        let extent = Extent::known(gpu, "skin.body_extent", count, &radix.blocks)?;
+        let plan = radix.plan(gpu, &buffers, &extent, places.trailing_zeros() + 1);
+        let spans = gpu.storage::<[u32; 2]>("skin.spans", places as usize)?;
+        let sorted = gpu.storage::<[u32; 8]>("skin.sorted", count as usize)?;
+        let [place, order, shape] = sources().map(|source| gpu.kernel(&source));
+        let to = plan.sorted;
+        Ok(Body {
+            shape_bindings: gpu.bind(&shape, &[&buffers.keys[to], &buffers.values[to], &spans, &sorted, &splats.geometry, &splats.sh]),
+            place,
+            order,
+            shape,
+            sort: plan.recording,
+            buffers,
+            to,
+            beside: gpu.storage_from("skin.beside", &filling.beside)?,
+            parted: gpu.storage::<f32>("skin.parted", count as usize)?,
+            spans,
+            sorted,
+            tint: gpu.storage_from("skin.tint", &filling.tint)?,
+            immediates: Immediates {
+                origin: origin.to_array(),
+                count,
+                reach_m: REACH * filling.spacing_m,
+                spacing_m: filling.spacing_m,
+                first: splats.count - count,
+                mask: places - 1,
+            },
+        })
+    }
+
+    /// Adds the passes that read `motion` and write the Gaussians of the particles. `rest_particles` are their captured places.
+    pub fn record(&self, gpu: &Gpu, motion: &wgpu::Buffer, rest_particles: &wgpu::Buffer, recording: &mut Recording) {
+        let (keys, values) = (&self.buffers.keys, &self.buffers.values);
+        let run = |recording: &mut Recording, kernel: &Kernel, bindings: &wgpu::BindGroup| {
+            recording.dispatch_with(kernel, bindings, &self.immediates, groups(self.immediates.count));
+        };
+        let place = gpu.bind(&self.place, &[motion, rest_particles, &self.beside, &keys[0], &values[0], &self.parted]);
+        run(recording, &self.place, &place);
+        recording.extend(&self.sort);
+        recording.clear(&self.spans);
+        let order = [&keys[self.to], &values[self.to], motion, &self.tint, &self.parted, &self.spans, &self.sorted];
+        let order = gpu.bind(&self.order, &order);
+        run(recording, &self.order, &order);
+        run(recording, &self.shape, &self.shape_bindings);
+    }
+}
+
+macro_rules! part {
+    ($name:literal) => {
+        (concat!("skin/", $name, ".wgsl"), include_str!(concat!("../../shaders/skin/", $name, ".wgsl")))
+    };
+}
+
+/// The passes, in the order in which they run; between the first two keys are sorted.
+pub(super) fn sources() -> [KernelSource; 3] {
+    use Access::{Read, Write};
+    let pass = |label, parts: &[(&'static str, &'static str)], bindings| KernelSource {
+        label,
+        entry: "main",
+        parts: [&[part!("body")], parts].concat(),
+        constants: constants(),
+        bindings,
+        immediate_bytes: size_of::<Immediates>() as u32,
+    };
+    [
+        pass("skin.body_place", &[AFFINE, part!("body_place")], vec![Read, Read, Read, Write, Write, Write]),
+        pass("skin.body_order", &[AFFINE, part!("body_order")], vec![Read, Read, Read, Read, Read, Write, Write]),
+        pass("skin.body_shape", &[ROTATION, part!("principal"), part!("body_shape")], vec![Read, Read, Read, Read, Write, Write]),
+    ]
+}
+
+fn constants() -> Vec<(&'static str, Constant)> {
+    let numbers = [
+        ("GONE_LOW", GONE[0]),
+        ("GONE_HIGH", GONE[1]),
+        ("GRAINS_GONE_LOW", GRAINS_GONE[0]),
+        ("GRAINS_GONE_HIGH", GRAINS_GONE[1]),
+        ("FEW_LOW", FEW[0]),
+        ("FEW_HIGH", FEW[1]),
+        ("THINNEST", THINNEST),
+        ("PARTED_LOW", PARTED[0]),
+        ("PARTED_HIGH", PARTED[1]),
+        ("RADIUS", RADIUS),
+        ("GRAIN", GRAIN),
+        ("YOUNG", YOUNG),
+        ("SEEN", SEEN),
+        ("OPACITY", OPACITY),
+        ("ALONE_LOW", ALONE[0]),
+        ("ALONE_HIGH", ALONE[1]),
+        ("SHEET", SHEET),
+        ("THREAD", THREAD),
+        ("BROAD_LOW", BROAD[0]),
+        ("BROAD_HIGH", BROAD[1]),
+        ("WIDEST", WIDEST),
+        ("SKIN", SKIN),
+        ("FLAT", FLAT),
+        ("EVEN", EVEN),
+        ("THIN_LOW", THIN[0]),
+        ("THIN_HIGH", THIN[1]),
+        ("OWN_COLOUR", OWN_COLOUR),
+        ("CLEAR", CLEAR),
+        ("SH_FIRST", SH_FIRST),
+        ("TONE", TONE),
+        ("GLOSS_PASTE", GLOSS[0]),
+        ("GLOSS_LIQUID", GLOSS[1]),
+    ];
+    let mut all = skinner::constants();
+    all.extend(numbers.map(|(name, value)| (name, Constant::F32(value))));
+    all.extend([("BESIDE", Constant::U32(BESIDE)), ("CROWD", Constant::U32(CROWD))]);
+    all
+}

@@ -1,0 +1,148 @@
+//! `body_*.wgsl` in plain Rust: every pair of particles is looked at in place of the sorted cells.
+
+use super::*;
+use crate::skin::twin::{eigen, smoothstep};
+use glam::Mat3;
+
+/// A particle as it is drawn: its record (see [`crate::skin::Splats`]) and the first coefficient of its colour.
+pub type Drawn = ([f32; 16], Vec3);
+
+/// Pass `skin.body_place`: how far those that were around a particle have left.
+pub fn parted(filling: &Filling, places: &[Vec3], flow: u32, i: usize) -> f32 {
+    let gone_at = if flow == 1 { GRAINS_GONE } else { GONE };
+    let beside = &filling.beside[i * BESIDE as usize..(i + 1) * BESIDE as usize];
+    let farther = |j: usize| places[j].distance(places[i]) - filling.rest_m[j].distance(filling.rest_m[i]);
+    let gone: f32 = beside.iter().map(|&j| smoothstep(gone_at, farther(j as usize) / filling.spacing_m)).sum();
+    smoothstep(PARTED, gone / BESIDE as f32)
+}
+
+/// What lies around a particle; see `struct Around`.
+struct Around {
+    volume: f32,
+    middle: Vec3,
+    spread: Mat3,
+    colour: Vec3,
+}
+
+fn around(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize, cells: f32) -> Around {
+    let reach_m = cells * REACH * filling.spacing_m;
+    let (mut volume, mut first, mut second, mut light, mut stirred) = (0.0, Vec3::ZERO, Mat3::ZERO, Vec3::ZERO, 1e-20);
+    for (j, &x) in places.iter().enumerate().filter(|(j, _)| flow[*j] > 0) {
+        let d = (x - places[i]) / reach_m;
+        let w = (1.0 - d.length_squared()).max(0.0).powi(3) * (filling.tint[j][3] / reach_m).powi(3);
+        volume += w;
+        first += d * w;
+        second += outer(d, d) * w;
+        let w = if j == i { w * OWN_COLOUR } else { w };
+        light += Vec3::from_slice(&filling.tint[j]).powf(2.0) * w;
+        stirred += w;
+    }
+    let mean = first / volume;
+    Around { volume, middle: mean, spread: second * (1.0 / volume) - outer(mean, mean), colour: (light / stirred).powf(0.5) }
+}
+
+/// What a particle looks like; see `struct Look`.
+struct Look {
+    covariance: Mat3,
+    normal: Vec3,
+    inward: Vec3,
+    thickness: f32,
+    colour: Vec3,
+}
+
+fn mix(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
+fn looked(size_m: f32, here: &Around, cells: f32, filling: &Filling) -> Look {
+    let reach_m = cells * REACH * filling.spacing_m;
+    let own = (size_m / reach_m).powi(3) / here.volume;
+    let (values, most, least) = principal(here.spread);
+    let joined = 1.0 - smoothstep(ALONE, own);
+    let broad = smoothstep(BROAD, (values[1].max(0.0) / values[0].max(1e-12)).sqrt());
+    let sheet = (1.0 - smoothstep(THIN, values[2].max(0.0) / values[1].max(1e-12))) * joined;
+
+    let off = here.middle.length();
+    let outward = -here.middle / off.max(1e-6);
+    let skin = (off / SKIN).min(1.0) * joined;
+    let across = if least.dot(outward) >= 0.0 { least } else { -least };
+    let n = (outward.lerp(across, sheet) + Vec3::X * 1e-9).normalize();
+
+    let apart = mix(THREAD * cells * own, cells * (SHEET * own).sqrt(), broad);
+    let wide = mix(1.0, apart.clamp(1.0, WIDEST), mix(joined, sheet, broad));
+    let flat = 1.0 + (FLAT - 1.0) * skin * (1.0 - sheet);
+    let across_r = mix(wide.powf(-0.5), wide, broad) * flat;
+    let thickness = mix(wide.powf(-0.5), wide.powi(-2), broad).max(THINNEST);
+    let longer = (wide * wide - across_r * across_r).max(0.0) * (1.0 - broad) * joined;
+    let flattened = outer(n, n) * (across_r * across_r - (thickness / (flat * flat)).powi(2));
+    Look {
+        covariance: Mat3::IDENTITY * (across_r * across_r) - flattened + outer(most, most) * longer,
+        normal: n * skin.max(sheet),
+        inward: here.middle * (reach_m * EVEN * (1.0 - SKIN / off.max(1e-6)).max(0.0) * joined),
+        thickness,
+        colour: here.colour,
+    }
+}
+
+fn look(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Look {
+    let size_m = filling.tint[i][3];
+    let here = around(filling, places, flow, i, 1.0);
+    let near = looked(size_m, &here, 1.0, filling);
+    let few = smoothstep(FEW, (size_m / (REACH * filling.spacing_m)).powi(3) / here.volume);
+    let far = looked(size_m, &around(filling, places, flow, i, 2.0), 2.0, filling);
+    Look {
+        covariance: near.covariance * (1.0 - few) + far.covariance * few,
+        normal: near.normal.lerp(if near.normal.dot(far.normal) >= 0.0 { far.normal } else { -far.normal }, few),
+        inward: near.inward.lerp(far.inward, few),
+        thickness: mix(near.thickness, far.thickness, few),
+        colour: near.colour.lerp(far.colour, few),
+    }
+}
+
+/// Passes `skin.body_order` and `skin.body_shape`: one particle, none where it is not seen. `flow` is 0 for what keeps its shape.
+pub fn drawn(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Option<Drawn> {
+    if flow[i] == 0 {
+        return None;
+    }
+    let parted = parted(filling, places, flow[i], i);
+    if parted <= 0.0 {
+        return None;
+    }
+    let look = look(filling, places, flow, i);
+    let radius_m = RADIUS * filling.tint[i][3] * mix(YOUNG, 1.0, parted);
+    let mine = Vec3::from_slice(&filling.tint[i]);
+    let mut opacity = OPACITY * smoothstep([0.0, SEEN], parted);
+    let (x, c, colour, gloss) = match flow[i] {
+        1 => {
+            let tone = 1.0 + TONE * ((stirred(i as u32) >> 8) as f32 / 8_388_608.0 - 1.0);
+            (places[i], Mat3::IDENTITY * (GRAIN * radius_m).powi(2), mine * tone, 0.0)
+        }
+        flow => {
+            opacity *= if flow == 3 { 1.0 - CLEAR * (1.0 - look.thickness).max(0.0) } else { 1.0 };
+            (places[i] + look.inward, look.covariance * (radius_m * radius_m), mine.lerp(look.colour, parted), GLOSS[flow as usize - 2])
+        }
+    };
+    let (a, b, d, n) = (c.x_axis, c.y_axis, c.z_axis, look.normal);
+    let record = [x.x, x.y, x.z, opacity, a.x, a.y, a.z, b.y, b.z, d.z, 1.0, 1.0 + gloss, n.x, n.y, n.z, 0.0];
+    Some((record, (colour - 0.5) / SH_FIRST))
+}
+
+fn stirred(word: u32) -> u32 {
+    let mut h = word;
+    h = (h ^ h >> 16).wrapping_mul(0x7feb_352d);
+    h = (h ^ h >> 15).wrapping_mul(0x846c_a68b);
+    h ^ h >> 16
+}
+
+fn outer(a: Vec3, b: Vec3) -> Mat3 {
+    Mat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+/// Principal values, descending, and the axes of the largest and of the least.
+pub fn principal(matrix: Mat3) -> ([f32; 3], Vec3, Vec3) {
+    let size = (matrix.x_axis.x.abs() + matrix.y_axis.y.abs() + matrix.z_axis.z.abs()).max(1e-30);
+    let (values, axes) = eigen(matrix * (1.0 / size));
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+    (order.map(|k| values[k] * size), axes.col(order[0]), axes.col(order[2]))
+}
