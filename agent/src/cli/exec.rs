@@ -14,7 +14,7 @@ pub struct Arguments {
     /// Splat file (.ply, .splat), spec (.toml) or builtin:demo; not needed with --continue
     scene: Option<String>,
     /// What should happen; one turn each
-    #[arg(short, long = "prompt", value_name = "TEXT", required_unless_present = "set")]
+    #[arg(short, long = "prompt", value_name = "TEXT", required_unless_present = "set", allow_hyphen_values = true)]
     prompt: Vec<String>,
 }
 

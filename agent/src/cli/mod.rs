@@ -165,4 +165,9 @@ mod tests {
         use clap::CommandFactory;
         Cli::command().debug_assert();
     }
+
+    #[test]
+    fn a_prompt_may_begin_with_a_sign() {
+        assert!(Cli::try_parse_from(["phystalk", "exec", "vase.splat", "-p", "-20 % stiffer"]).is_ok());
+    }
 }

@@ -33,9 +33,9 @@ impl Clause {
     }
 
     /// Takes the first phrase that `pick` accepts and that stands right before another meaning.
-    pub fn take_before<T>(&mut self, next: &Sense, pick: impl Fn(&Sense) -> Option<T>) -> Option<T> {
+    pub fn take_before<T>(&mut self, next: impl Fn(&Sense) -> bool, pick: impl Fn(&Sense) -> Option<T>) -> Option<T> {
         let at =
-            (1..self.phrases.len()).find(|&i| self.phrases[i].sense == *next && !self.taken[i - 1] && pick(&self.phrases[i - 1].sense).is_some())?;
+            (1..self.phrases.len()).find(|&i| next(&self.phrases[i].sense) && !self.taken[i - 1] && pick(&self.phrases[i - 1].sense).is_some())?;
         self.taken[at - 1] = true;
         pick(&self.phrases[at - 1].sense)
     }
@@ -60,6 +60,25 @@ impl Clause {
         self.phrases.iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(phrase, _)| phrase)
     }
 
+    /// Where phrases stand that nobody took yet.
+    pub fn left_indices(&self) -> impl Iterator<Item = usize> {
+        (0..self.phrases.len()).filter(|&i| !self.taken[i])
+    }
+
+    /// Takes a meaning together with the phrase after it, articles aside, where `pick` accepts that one.
+    pub fn take_after<T>(&mut self, lead: &Sense, pick: impl Fn(&Sense) -> Option<T>) -> Option<T> {
+        let at = self.left_indices().find(|&i| self.phrases[i].sense == *lead)?;
+        let next = (at + 1..self.phrases.len()).find(|&i| self.phrases[i].sense != Sense::Article).filter(|&i| !self.taken[i])?;
+        let value = pick(&self.phrases[next].sense)?;
+        (self.taken[at], self.taken[next]) = (true, true);
+        Some(value)
+    }
+
+    /// Takes the phrase at a place.
+    pub fn take_at_index(&mut self, index: usize) {
+        self.taken[index] = true;
+    }
+
     /// Whether anybody took something.
     pub fn took_something(&self) -> bool {
         self.taken.iter().any(|t| *t)
@@ -70,7 +89,16 @@ impl Clause {
         let silent = |sense: &Sense| {
             matches!(
                 sense,
-                Sense::Objects(_) | Sense::It | Sense::All | Sense::Article | Sense::As | Sense::Preposition(_) | Sense::Filler | Sense::Separator
+                Sense::Objects(_)
+                    | Sense::It
+                    | Sense::All
+                    | Sense::Whole
+                    | Sense::Wait
+                    | Sense::Article
+                    | Sense::As
+                    | Sense::Preposition(_)
+                    | Sense::Filler
+                    | Sense::Separator
             )
         };
         // "On the table" only says where it stands; any other word about the ground asks for something.
@@ -87,7 +115,7 @@ impl Clause {
     /// Takes back everything but what no reader could have understood: the clause is refused for a reason of its own.
     pub fn refuse(&mut self) {
         for (phrase, taken) in self.phrases.iter().zip(&mut self.taken) {
-            *taken = !matches!(phrase.sense, Sense::Unknown | Sense::Unbuilt(_) | Sense::Condition | Sense::Negation | Sense::Question);
+            *taken = !matches!(phrase.sense, Sense::Unknown | Sense::Deed | Sense::Unbuilt(_) | Sense::Condition | Sense::Negation | Sense::Question);
         }
     }
 
@@ -160,12 +188,27 @@ impl Clause {
             Sense::Property(property) if properties.contains(property) => Some((*property, 1.0, None)),
             _ => None,
         });
-        let (property, mut sign, form) = noun.or_else(|| {
+        let (property, sign, form) = noun.or_else(|| {
             self.take(|s| match s {
                 Sense::Quality(property, sign, form) if properties.contains(property) => Some((*property, *sign, Some(*form))),
                 _ => None,
             })
         })?;
+        Some(self.scaled(property, sign, form))
+    }
+
+    /// Takes "less wind", "half the wind", "20 % more wind": how much more or less of what a verb names.
+    pub fn take_more(&mut self, verb: Verb) -> Option<Scale> {
+        let counts = matches!(verb, Verb::Blow | Verb::Field(_))
+            && self.has(|s| matches!(s, Sense::Factor(_) | Sense::Measure(Quantity { dimension: Dimension::Percent, .. }, _)));
+        if !counts && !self.has(|s| matches!(s, Sense::Change(_))) {
+            return None;
+        }
+        Some(Scale { compared: true, ..self.scaled(Property::Strength, 1.0, None) })
+    }
+
+    /// How much, of a property that is taken already.
+    fn scaled(&mut self, property: Property, mut sign: f64, form: Option<Form>) -> Scale {
         let mut compared = form == Some(Form::Comparative);
         if let Some(change) = self.take(|s| match s {
             Sense::Change(change) => Some(*change),
@@ -202,7 +245,7 @@ impl Clause {
             (None, Some((percent, _))) => 1.0 + sign * percent / 100.0,
             (None, None) => step(property).powf(sign * degree),
         };
-        Some(Scale { property, ratio, sign, compared, asked })
+        Scale { property, ratio, sign, compared, asked }
     }
 
     /// Takes adverbs of strength: 0 where there are none, 1 for "hard", 2 for "very hard", -1 for "gently".
@@ -250,34 +293,7 @@ impl Clause {
 
     /// Whether the clause, standing alone, asks for something.
     fn has_head(&self) -> bool {
-        self.phrases.iter().any(|p| match &p.sense {
-            Sense::Verb(_)
-            | Sense::Quality(..)
-            | Sense::Property(_)
-            | Sense::Material(_)
-            | Sense::Unbuilt(_)
-            | Sense::Gravity(_)
-            | Sense::Surface(_)
-            | Sense::Springy(_)
-            | Sense::Scenery(_)
-            | Sense::Course(_)
-            | Sense::Proxy(_)
-            | Sense::View(_)
-            | Sense::Pose(_)
-            | Sense::Turn(_)
-            | Sense::Change(_)
-            | Sense::Condition
-            | Sense::Question
-            | Sense::Camera
-            | Sense::Smoothed(_)
-            | Sense::Backdrop(_)
-            | Sense::PictureSize(_)
-            | Sense::Reseed
-            | Sense::For(_)
-            | Sense::Negation => true,
-            Sense::Measure(quantity, _) => matches!(quantity.dimension, Dimension::Pressure | Dimension::Density | Dimension::FrameRate),
-            _ => false,
-        })
+        self.phrases.iter().any(|p| asks(&p.sense))
     }
 
     /// Whether all that the clause asks for is how a verb is to be done: "and hard".
@@ -370,6 +386,40 @@ pub fn qualifies(verb: Verb) -> &'static [Property] {
     }
 }
 
+/// Whether a meaning, standing alone, asks for something.
+pub fn asks(sense: &Sense) -> bool {
+    match sense {
+        Sense::Verb(_)
+        | Sense::Quality(..)
+        | Sense::Property(_)
+        | Sense::Material(_)
+        | Sense::Unbuilt(_)
+        | Sense::Gravity(_)
+        | Sense::Surface(_)
+        | Sense::Springy(_)
+        | Sense::Scenery(_)
+        | Sense::Course(_)
+        | Sense::Proxy(_)
+        | Sense::View(_)
+        | Sense::Pose(_)
+        | Sense::Turn(_)
+        | Sense::Change(_)
+        | Sense::Condition
+        | Sense::Question
+        | Sense::Camera
+        | Sense::Smoothed(_)
+        | Sense::Backdrop(_)
+        | Sense::PictureSize(_)
+        | Sense::Reseed
+        | Sense::For(_)
+        | Sense::Deed
+        | Sense::Replace
+        | Sense::Negation => true,
+        Sense::Measure(quantity, _) => matches!(quantity.dimension, Dimension::Pressure | Dimension::Density | Dimension::FrameRate),
+        _ => false,
+    }
+}
+
 /// Stretches between separators. "Without spinning" after another verb begins one too.
 fn segments(phrases: &[Phrase]) -> Vec<&[Phrase]> {
     let mut segments = Vec::new();
@@ -389,13 +439,17 @@ pub fn split(phrases: Vec<Phrase>) -> Vec<Clause> {
     let mut pending: Option<Clause> = None;
     for segment in segments(&phrases) {
         let mut clause = Clause::new(segment.to_vec());
+        let waits = !clause.has_head() && clause.phrases.iter().any(|p| p.sense == Sense::Wait);
         let belongs = !clause.has_head()
             || clause.starts_with_condition()
             || clauses.last().and_then(Clause::last_verb).is_some_and(|verb| clause.only_qualifies(verb));
         if let Some(mut before) = pending.take() {
             before.append(clause);
             clause = before;
-        } else if belongs && let Some(last) = clauses.last_mut() {
+        } else if belongs
+            && !waits
+            && let Some(last) = clauses.last_mut()
+        {
             match last.repeated_verb(&clause) {
                 // "push it left at 0.5 s and right at 1 s": the verb is said once for both.
                 Some(verb) => clauses.push(Clause::new([vec![verb], clause.phrases].concat())),
@@ -403,7 +457,7 @@ pub fn split(phrases: Vec<Phrase>) -> Vec<Clause> {
             }
             continue;
         }
-        if belongs && clauses.is_empty() {
+        if waits || belongs && clauses.is_empty() {
             pending = Some(clause);
         } else {
             clauses.push(clause);

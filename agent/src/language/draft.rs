@@ -31,6 +31,8 @@ pub struct Draft<'a> {
     subject: Option<Vec<usize>>,
     /// Whether the newest turn was taken back first.
     pub undone: bool,
+    /// Whether the request begins with a "no,": it says otherwise what the newest turn said.
+    pub corrects: bool,
     /// Whether this request sent something up or placed it high: it falls by itself.
     pub aloft: bool,
 }
@@ -39,12 +41,17 @@ impl<'a> Draft<'a> {
     /// Starts from `spec`.
     pub fn new(context: &'a Context<'a>, tokens: &'a [Token], spec: Spec) -> Draft<'a> {
         let undone = spec != *context.spec;
-        Draft { context, tokens, spec, gloss: Vec::new(), subject: None, undone, aloft: false }
+        Draft { context, tokens, spec, gloss: Vec::new(), subject: None, undone, corrects: false, aloft: false }
     }
 
     /// Some words of the request, as written.
     pub fn words(&self, span: Range<usize>) -> String {
         self.tokens[span].iter().map(|t| t.text.as_str()).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The request's tokens.
+    pub fn tokens(&self) -> &[Token] {
+        self.tokens
     }
 
     /// The objects that a clause is about: those it names, else those spoken of before, else the only one.

@@ -7,10 +7,12 @@
 //! amount or a time is left, nothing is changed. Nothing is assumed in silence: amounts that were not given, corrected
 //! spellings, directions and whom a noun was taken for are in the gloss.
 
+mod beside;
 mod clause;
 mod clauses;
 mod directions;
 mod draft;
+mod frames;
 mod lexicon;
 mod numbers;
 #[cfg(test)]
@@ -83,9 +85,14 @@ pub struct Context<'a> {
 /// Understands a request. The same text and context give the same reply; no text panics.
 pub fn understand(text: &str, context: &Context) -> Reply {
     let names = Names::new(context.spec.objects.iter().map(|o| o.name.as_str()));
-    let mut reading = phrases::read(tokens::tokenise(text), &names);
+    let mut tokens = tokens::tokenise(text);
+    let frames = frames::count(&mut tokens, context.spec.time.fps);
+    let mut reading = phrases::read(tokens, &names);
+    reading.corrections.extend(frames);
+    beside::understand(&mut reading, context.spec);
     reference::demote_parts(&mut reading);
     reference::demote_scenery(&mut reading);
+    beside::hear_deeds(&mut reading);
     if context.spec.objects.len() == 1 {
         reference::presume(&mut reading, 0);
     }
@@ -106,13 +113,14 @@ pub fn understand(text: &str, context: &Context) -> Reply {
 
 /// A request that is refused as a whole, with the words of it that nobody knows.
 fn refused(reason: String, reading: &Reading) -> Reply {
-    let unknown = reading.phrases.iter().filter(|p| p.sense == Sense::Unknown).map(|p| p.span.clone());
+    let unknown = reading.phrases.iter().filter(|p| matches!(p.sense, Sense::Unknown | Sense::Deed)).map(|p| p.span.clone());
     Reply::Refused { reason, not_understood: words(reading, unknown.chain(reading.presumed.iter().cloned())) }
 }
 
 /// Reads clause by clause into edits, starting from `start`.
 fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
     let mut draft = Draft::new(context, &reading.tokens, start);
+    draft.corrects = reading.corrects;
     let mut clauses = clause::split(reading.phrases.clone());
     // The world of the turn holds for all of it: "jump 30 cm and do it on the moon" is 30 cm on the moon.
     for clause in &mut clauses {
@@ -124,8 +132,8 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
     for clause in &mut clauses {
         let before = draft.spec.clone();
         let result = clauses::understand(clause, &mut draft).and_then(|()| match unheeded::refusal(clause, &draft) {
-            Some(refusal) if clause.took_something() => Err(refusal),
-            _ => Ok(()),
+            Some(refusal) => Err(refusal),
+            None => Ok(()),
         });
         match result {
             Ok(()) => understood |= clause.took_something(),

@@ -25,6 +25,10 @@ pub enum Dimension {
     Density,
     /// Kilograms.
     Mass,
+    /// Pascal seconds.
+    Viscosity,
+    /// Newtons a metre.
+    Tension,
     /// Frames a second.
     FrameRate,
     /// Hundredths.
@@ -48,6 +52,9 @@ pub struct Quantity {
 
 /// Reads a number, in digits or words, at `at`: its value and where it ends.
 pub fn number(tokens: &[Token], at: usize) -> Option<(f64, usize)> {
+    if word(tokens, at) == "minus" {
+        return number(tokens, at + 1).map(|(value, end)| (-value, end));
+    }
     let (whole, end) = digits(tokens, at).or_else(|| cardinal(tokens, at)).or_else(|| fraction(tokens, at))?;
     // "two and a half", "2 1/2"
     if word(tokens, end) == "and"
@@ -236,6 +243,12 @@ pub fn quantity(tokens: &[Token], at: usize) -> Option<(Quantity, usize)> {
     Some((Quantity { value, dimension: Dimension::Plain }, after))
 }
 
+/// A unit alone, "the first second": one of it.
+pub fn one(tokens: &[Token], at: usize) -> Option<(Quantity, usize)> {
+    let (unit, end) = unit(tokens, at)?;
+    Some((Quantity { value: unit.factor, dimension: unit.dimension()? }, end))
+}
+
 /// A unit: how many SI units it is, and the exponents of metre, second, kilogram, radian and frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Unit {
@@ -255,6 +268,8 @@ impl Unit {
             [-1, -2, 1, 0, 0] => Dimension::Pressure,
             [-3, 0, 1, 0, 0] => Dimension::Density,
             [0, 0, 1, 0, 0] => Dimension::Mass,
+            [-1, -1, 1, 0, 0] => Dimension::Viscosity,
+            [0, -2, 1, 0, 0] => Dimension::Tension,
             [0, -1, 0, 0, 1] => Dimension::FrameRate,
             _ => return None,
         })
@@ -308,6 +323,10 @@ pub const UNITS: &[(&str, f64, [i8; 5])] = &[
     ("kpa kilopascal kilopascals", 1e3, PRESSURE),
     ("mpa megapascal megapascals", 1e6, PRESSURE),
     ("gpa gigapascal gigapascals", 1e9, PRESSURE),
+    ("cp centipoise", 1e-3, [-1, -1, 1, 0, 0]),
+    ("poise", 0.1, [-1, -1, 1, 0, 0]),
+    ("newton newtons", 1.0, [1, -2, 1, 0, 0]),
+    ("mn millinewton millinewtons", 1e-3, [1, -2, 1, 0, 0]),
     ("frame frames", 1.0, [0, 0, 0, 0, 1]),
     ("fps", 1.0, [0, -1, 0, 0, 1]),
 ];
@@ -330,8 +349,21 @@ fn base_unit(word: &str) -> Option<Unit> {
 fn unit(tokens: &[Token], at: usize) -> Option<(Unit, usize)> {
     // A g alone is free fall, one over something is a gram.
     let gram = word(tokens, at) == "g" && matches!(word(tokens, at + 1), "/" | "per");
-    let mut unit = base_unit(if gram { "gram" } else { word(tokens, at) })?;
+    // An n alone is a word, one over something is a newton.
+    let newton = word(tokens, at) == "n" && matches!(word(tokens, at + 1), "/" | "per");
+    let name = match word(tokens, at) {
+        _ if gram => "gram",
+        _ if newton => "newton",
+        name => name,
+    };
+    let mut unit = base_unit(name)?;
     let mut end = at + 1;
+    // "5 Pa s" is a viscosity; of a million of them nobody speaks, so "mPa s" is a thousandth.
+    if unit.exponents == PRESSURE && base_unit(word(tokens, end)).is_some_and(|u| u.exponents == SECOND) && word(tokens, end) != "min" {
+        let pascals = if name == "mpa" { 1e-3 } else { unit.factor };
+        unit = Unit { factor: pascals, exponents: [-1, -1, 1, 0, 0] };
+        end += 1;
+    }
     loop {
         let mut below_at = match word(tokens, end) {
             "/" | "per" => end + 1,

@@ -119,7 +119,7 @@ pub fn page() -> String {
         "<!-- Made from the code by `PHYSTALK_WRITE_DOCS=1 cargo test -p phystalk-agent phrases_page`. Do not edit. -->\n\n# Phrases\n\n\
          What the offline phrasebook understands. It is a grammar: any subject, verb, direction, amount and time below go together, and a request may hold \
          several clauses (`and`, `then`, `but`, commas). Every word counts: it is used, or it is one of the small words at the end, or it is reported. A request is \
-         done as a whole or not at all: a clause that is refused, or an amount that has no place, refuses all of it. Where the scene has one object, a noun \
+         done as a whole or not at all: a clause that is refused, or an amount, a denial or a limit that has no place, refuses all of it. Where the scene has one object, a noun \
          that nobody knows means it, and that is said. A word of \
          four letters or more may have one slip; what it was read as is said.\n",
     );
@@ -254,6 +254,8 @@ fn meaning(sense: &Sense) -> String {
         }
         .to_owned(),
         Sense::Moment(Moment::Apex) => "at its apex, predicted".to_owned(),
+        Sense::Moment(Moment::OnTheWay) => "half way: no event waits for that".to_owned(),
+        Sense::Moment(Moment::LaterLanding | Moment::AfterLanding) => "later than an impact: no event waits for that".to_owned(),
         Sense::Moment(Moment::Landing) => "when it meets something, found by the run".to_owned(),
         Sense::Smoothed(true) => "a liquid by smoothed particles".to_owned(),
         Sense::Smoothed(false) => "a liquid on the grid".to_owned(),
@@ -274,6 +276,12 @@ fn meaning(sense: &Sense) -> String {
         Sense::Edge => "over the edge of the collider it stands on".to_owned(),
         Sense::AboveGround => "over what is below it".to_owned(),
         Sense::Negation => "stops or takes back a motion; elsewhere it holds the clause back".to_owned(),
+        Sense::Except => "what follows is left as it is".to_owned(),
+        Sense::Limit => "a limit that is not built: holds the clause back".to_owned(),
+        Sense::Whole => "its parts too".to_owned(),
+        Sense::Ends => "ends what acts, at a time".to_owned(),
+        Sense::Wait => "what follows comes later".to_owned(),
+        Sense::Replace => "other stuff for some that is there".to_owned(),
         Sense::Condition => "not built yet: holds the clause back".to_owned(),
         Sense::Question => "a question is not answered".to_owned(),
         Sense::Instead => "replaces the push before".to_owned(),
@@ -326,6 +334,7 @@ fn part_name(part: Part) -> &'static str {
         Part::BackHalf => "the back half",
         Part::Flowers => "what is above the height at which its colours change most",
         Part::Pot => "what is below that",
+        Part::Ends => "the highest and the lowest twentieth",
         Part::Rest => "all that is no part of its own",
     }
 }
@@ -368,6 +377,10 @@ fn unbuilt_name(what: Unbuilt) -> &'static str {
         Unbuilt::Deform => "squeezing and bending",
         Unbuilt::Look => "colours and light",
         Unbuilt::Scene => "size and number of things",
+        Unbuilt::Filling => "filling, pouring, other stuff inside",
+        Unbuilt::Front => "changes that run through a thing",
+        Unbuilt::Mover => "other things that move",
+        Unbuilt::Pendulum => "a swing about a point",
         Unbuilt::Playback => "playback",
     }
 }

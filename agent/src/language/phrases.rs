@@ -63,6 +63,8 @@ pub struct Reading {
     pub phrases: Vec<Phrase>,
     /// Corrections, as sentences.
     pub corrections: Vec<String>,
+    /// Whether it begins with a "no,".
+    pub corrects: bool,
     /// Tokens that were taken for the only object there is.
     pub presumed: Vec<Range<usize>>,
 }
@@ -97,7 +99,7 @@ pub fn read(mut tokens: Vec<Token>, names: &Names) -> Reading {
     scale_gravity(&mut phrases);
     hear_complaints(&mut phrases, &tokens);
     tell_times(&mut phrases);
-    Reading { tokens, phrases, corrections, presumed: Vec::new() }
+    Reading { tokens, phrases, corrections, corrects: false, presumed: Vec::new() }
 }
 
 /// The longest phrase at each place, one after the other.
@@ -117,13 +119,13 @@ fn read_one(tokens: &[Token], at: usize, names: &Names) -> Option<(Sense, usize)
     let name = names.read(tokens, at).map(|(objects, length)| (Sense::Objects(objects), length));
     let pattern = pattern(tokens, at);
     let measure = span_of_time(tokens, at).or_else(|| measure(tokens, at));
-    [name, pattern, measure, version(tokens, at), landing(tokens, at, names)].into_iter().flatten().fold(
-        None,
-        |best: Option<(Sense, usize)>, next| match best {
+    [name, pattern, measure, first_seconds(tokens, at), version(tokens, at), landing(tokens, at, names), bounce(tokens, at)]
+        .into_iter()
+        .flatten()
+        .fold(None, |best: Option<(Sense, usize)>, next| match best {
             Some(best) if best.1 >= next.1 => Some(best),
             _ => Some(next),
-        },
-    )
+        })
 }
 
 fn pattern(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
@@ -156,6 +158,7 @@ fn landing(tokens: &[Token], at: usize, names: &Names) -> Option<(Sense, usize)>
     };
     let named = |i: usize| names.read(tokens, i).map_or(1, |(_, length)| length);
     let verb = match word(who) {
+        "it" | "they" if matches!(word(who + 1), "has" | "have" | "first") => who + 2,
         "it" | "they" => who + 1,
         _ => who + article(who) + named(who + article(who)),
     };
@@ -163,6 +166,12 @@ fn landing(tokens: &[Token], at: usize, names: &Names) -> Option<(Sense, usize)>
         word(verb),
         "land"
             | "lands"
+            | "landed"
+            | "bounce"
+            | "bounces"
+            | "bounced"
+            | "touched"
+            | "struck"
             | "hit"
             | "hits"
             | "touch"
@@ -188,7 +197,42 @@ fn landing(tokens: &[Token], at: usize, names: &Names) -> Option<(Sense, usize)>
         None => usize::from(known),
     };
     let end = if length > 0 { what + length } else { verb + 1 };
-    Some((Sense::Moment(Moment::Landing), end - at))
+    match (word(end), word(end + 1), word(end + 2)) {
+        ("again", ..) => Some((Sense::Moment(Moment::LaterLanding), end + 1 - at)),
+        ("a" | "the", "second" | "third", "time") => Some((Sense::Moment(Moment::LaterLanding), end + 3 - at)),
+        ("the", "first", "time") => Some((Sense::Moment(Moment::Landing), end + 3 - at)),
+        _ => Some((Sense::Moment(Moment::Landing), end - at)),
+    }
+}
+
+/// "at the first bounce", "after the second impact".
+fn bounce(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
+    let word = |i: usize| tokens.get(i).map_or("", |t| t.word.as_str());
+    if !matches!(word(at), "at" | "on" | "upon" | "after" | "with" | "during") {
+        return None;
+    }
+    let ordinal = at + 1 + usize::from(matches!(word(at + 1), "the" | "its" | "a"));
+    let (moment, noun) = match word(ordinal) {
+        "first" | "initial" => (Moment::Landing, ordinal + 1),
+        "second" | "third" | "fourth" | "fifth" | "next" | "last" | "final" | "other" | "each" | "every" | "any" => {
+            (Moment::LaterLanding, ordinal + 1)
+        }
+        _ => (Moment::Landing, ordinal),
+    };
+    let meets = matches!(word(noun), "bounce" | "impact" | "landing" | "hit" | "contact" | "touch" | "touchdown" | "collision");
+    meets.then_some((Sense::Moment(moment), noun + 1 - at))
+}
+
+/// "for the first second", "in the first 0.5 s": from the start until then.
+fn first_seconds(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
+    let word = |i: usize| tokens.get(i).map_or("", |t| t.word.as_str());
+    let first = at + usize::from(matches!(word(at), "for" | "in" | "during" | "over" | "within"));
+    let first = first + usize::from(word(first) == "the");
+    if word(first) != "first" || first == at {
+        return None;
+    }
+    let (quantity, end) = numbers::quantity(tokens, first + 1).or_else(|| numbers::one(tokens, first + 1))?;
+    (quantity.dimension == Dimension::Time && quantity.value > 0.0).then_some((Sense::Span(0.0, quantity.value), end - at))
 }
 
 /// "from 0.2 s to 1 s", "from 0.2 to 1 s", "between 0.2 and 1 s".
@@ -202,8 +246,13 @@ fn span_of_time(tokens: &[Token], at: usize) -> Option<(Sense, usize)> {
     }
     let (last, end) = numbers::quantity(tokens, middle + 1)?;
     let time = |d| matches!(d, Dimension::Time | Dimension::Plain);
-    let fits = last.dimension == Dimension::Time && time(first.dimension);
+    // "Frames 10 to 20": the last number is in the unit of the first.
+    let fits = time(last.dimension) && time(first.dimension) && (last.dimension, first.dimension) != (Dimension::Plain, Dimension::Plain);
     fits.then(|| {
+        if last.dimension == Dimension::Plain {
+            let unit = first.value / plain_value(tokens, at + 1).unwrap_or(first.value);
+            return (Sense::Span(first.value, last.value * unit), end - at);
+        }
         // "from 200 to 800 ms": the first number is in the unit of the last.
         let unit = if first.dimension == Dimension::Plain { last.value / plain_value(tokens, middle + 1).unwrap_or(last.value) } else { 1.0 };
         (Sense::Span(first.value * unit, last.value), end - at)

@@ -2,22 +2,26 @@
 //! a capture is named after its file, and people say what they see. Among several objects nobody can know.
 
 use super::phrases::{Phrase, Reading};
-use super::sense::{Part, Preposition, Sense, Verb};
+use super::sense::{Part, Preposition, Sense, Unbuilt, Verb};
 use std::ops::Range;
 
 /// Nouns of parts ("flowers", "pot") are such only where the stretch asks for something that a part can have: "push the
 /// flowers" means the thing that they stand in.
 pub fn demote_parts(reading: &mut Reading) {
+    // "The base and the flowers" goes with what was asked of the base.
+    let mut asked = false;
     for stretch in reading.phrases.split_mut(|p| p.sense == Sense::Separator) {
         let noun = |s: &Sense| matches!(s, Sense::Part(Part::Flowers | Part::Pot));
-        let moves =
-            |s: &Sense| matches!(s, Sense::Verb(verb) if !matches!(verb, Verb::Pin | Verb::Release | Verb::Change(_) | Verb::Turn | Verb::Move));
+        let moves = |s: &Sense| matches!(s, Sense::Verb(verb) if !matches!(verb, Verb::Pin | Verb::Hang | Verb::Release | Verb::Change(_) | Verb::Turn | Verb::Move));
         let had = |s: &Sense| {
             matches!(s, Sense::Material(_) | Sense::Quality(..) | Sense::Property(_) | Sense::Unbuilt(_) | Sense::Smoothed(_) | Sense::Measure(..))
-                || matches!(s, Sense::Verb(Verb::Pin | Verb::Release | Verb::Change(_)))
+                || matches!(s, Sense::Verb(Verb::Pin | Verb::Hang | Verb::Release | Verb::Change(_)))
                 || matches!(s, Sense::Part(_)) && !noun(s)
         };
-        if stretch.iter().any(|p| moves(&p.sense)) || !stretch.iter().any(|p| had(&p.sense)) {
+        let bare = !stretch.iter().any(|p| super::clause::asks(&p.sense) || had(&p.sense));
+        let asks = !stretch.iter().any(|p| moves(&p.sense)) && stretch.iter().any(|p| had(&p.sense));
+        asked = if bare { asked } else { asks };
+        if !asked {
             stretch.iter_mut().filter(|p| noun(&p.sense)).for_each(|p| p.sense = Sense::Unknown);
         }
     }
@@ -33,7 +37,17 @@ pub fn demote_scenery(reading: &mut Reading) {
         for i in 0..stretch.len() {
             let told = stretch[..i].iter().rfind(|p| !describes(&p.sense));
             let new = told.is_some_and(|p| matches!(tokens[p.span.end - 1].word.as_str(), "a" | "an" | "another" | "second"));
-            if matches!(stretch[i].sense, Sense::Scenery(_)) && (acts || !denied && !new) {
+            if !matches!(stretch[i].sense, Sense::Scenery(_)) {
+                continue;
+            }
+            // "Drop a ball on it", "shoot it with a ball", "put it in a box": what is put around stands there and nothing else.
+            let lead = stretch[..i].iter().rev().map(|p| &p.sense).find(|s| !describes(s) && **s != Sense::Article);
+            let other = stretch.iter().any(|p| matches!(p.sense, Sense::It | Sense::Objects(_) | Sense::All));
+            let within = matches!(lead, Some(Sense::Preposition(Preposition::With | Preposition::In | Preposition::Into)));
+            let first = stretch[..i].iter().all(|p| matches!(p.sense, Sense::Article | Sense::Filler) || describes(&p.sense));
+            if !denied && new && (within && other || acts && (!first || other)) {
+                stretch[i].sense = Sense::Unbuilt(Unbuilt::Mover);
+            } else if acts || !denied && !new {
                 stretch[i].sense = Sense::Unknown;
             }
         }
@@ -46,7 +60,12 @@ pub fn presume(reading: &mut Reading, object: usize) {
     let mut start = 0;
     while start < reading.phrases.len() {
         let end = (start..reading.phrases.len()).find(|&i| ends(&reading.phrases[i])).unwrap_or(reading.phrases.len());
-        if let Some(noun) = stranger(&reading.phrases[start..end]) {
+        // "Only the flowers" is less than all of it.
+        let only = |noun: &Range<usize>| {
+            let before = reading.phrases[start..start + noun.start].iter().rfind(|p| !describes(&p.sense) && p.sense != Sense::Article);
+            before.is_some_and(|p| reading.tokens[p.span.end - 1].word == "only")
+        };
+        if let Some(noun) = stranger(&reading.phrases[start..end]).filter(|noun| !only(noun)) {
             let noun = start + noun.start..start + noun.end;
             reading.presumed.push(reading.phrases[noun.start].span.start..reading.phrases[noun.end - 1].span.end);
             reading.phrases[noun].iter_mut().for_each(|p| p.sense = Sense::Objects(vec![object]));
@@ -78,5 +97,5 @@ pub fn stranger(phrases: &[Phrase]) -> Option<Range<usize>> {
 
 /// Adjectives between an article and its noun.
 fn describes(sense: &Sense) -> bool {
-    matches!(sense, Sense::Material(_) | Sense::Unbuilt(_) | Sense::Quality(..))
+    matches!(sense, Sense::Material(_) | Sense::Unbuilt(_) | Sense::Quality(..) | Sense::Whole)
 }

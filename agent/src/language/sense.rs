@@ -244,6 +244,8 @@ pub enum Part {
     Pot,
     /// All that is no part of its own.
     Rest,
+    /// The highest and the lowest twentieth.
+    Ends,
 }
 
 /// What is put around things.
@@ -288,6 +290,12 @@ pub enum Moment {
     Apex,
     /// When it comes down.
     Landing,
+    /// When it comes down once more, or every time: no event waits for that.
+    LaterLanding,
+    /// So long after it came down: no event waits for that.
+    AfterLanding,
+    /// Half way up or down.
+    OnTheWay,
 }
 
 /// What concerns turns of the conversation.
@@ -334,6 +342,14 @@ pub enum Unbuilt {
     Scene,
     /// Playback speed.
     Playback,
+    /// Stuff put inside a thing or poured on it.
+    Filling,
+    /// A change that runs through a thing from one side to the other.
+    Front,
+    /// Another thing that moves.
+    Mover,
+    /// A swing about a point above.
+    Pendulum,
 }
 
 /// What a word or a group of words means.
@@ -419,6 +435,22 @@ pub enum Sense {
     Negation,
     /// "if", "when": holds the clause back.
     Condition,
+    /// "except": what follows is left as it is.
+    Except,
+    /// "below", "outside": a limit that holds the clause back.
+    Limit,
+    /// "whole": its parts too.
+    Whole,
+    /// "dies down": ends what acts.
+    Ends,
+    /// "wait": what follows comes later.
+    Wait,
+    /// "replace": other stuff for some that is there.
+    Replace,
+    /// Stuff that is there, in a part or from an event on: "the sand".
+    Stuff(&'static str),
+    /// A verb that nobody knows.
+    Deed,
     /// "why", "how".
     Question,
     /// "instead": replaces what was asked before.

@@ -36,6 +36,7 @@ pub fn interjections(reading: &mut Reading) {
         && matches!(follows, Some(Sense::Separator | Sense::Turn(_)))
     {
         reading.phrases[0].sense = Sense::Filler;
+        reading.corrects = true;
     }
 }
 

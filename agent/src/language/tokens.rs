@@ -55,7 +55,7 @@ fn read_one(rest: &[char], glued: bool, previous: Option<&Token>) -> (Option<Tok
         return read_word(rest);
     }
     let sign = match first {
-        '"' | '\'' | '(' | ')' | '[' | ']' | '“' | '”' | '‘' | '’' | ':' | '*' | '_' | '`' | '=' | '…' => return (None, 1),
+        '"' | '\'' | '(' | ')' | '[' | ']' | '“' | '”' | '‘' | '’' | ':' | '*' | '_' | '`' | '=' | '…' | '·' => return (None, 1),
         '°' | 'º' => "deg",
         '&' | '+' => "and",
         '×' => "x",

@@ -1,13 +1,77 @@
-//! Amounts and times that nobody took. To run without a number that was said would be to guess, so the turn is refused,
-//! with what would be understood instead.
+//! Words that nobody took and without which the rest would be something else: amounts and times, exceptions, denials,
+//! limits, a second material, a part. To run without them would be to guess, so the turn is refused, with what would be
+//! understood instead. Words that only describe pass, and are reported.
 
+use super::beside;
 use super::clause::Clause;
 use super::draft::{Draft, Refusal};
 use super::numbers::Dimension;
-use super::sense::{Sense, Verb};
+use super::sense::{Field, Moment, Sense, Verb};
 
-/// Why a clause is refused whose readers left an amount or a time; None where they left none.
+/// Why a clause is refused whose readers left such a word; None where they left none.
 pub fn refusal(clause: &Clause, draft: &Draft) -> Option<Refusal> {
+    limit(clause, draft).or_else(|| amount(clause, draft).filter(|_| clause.took_something()))
+}
+
+/// The first word that is left and limits, denies or turns round what was read.
+fn limit(clause: &Clause, draft: &Draft) -> Option<Refusal> {
+    let (index, hint) = clause.left_indices().find_map(|i| Some((i, meant(clause, draft, i)?)))?;
+    let phrase = &clause.phrases()[index];
+    let why = if phrase.sense == Sense::Deed { "is no verb that is known" } else { "changes what is meant, and is not understood there" };
+    Some(format!("\"{}\" {why}: {hint}", draft.words(phrase.span.clone())))
+}
+
+/// What would be understood, where the phrase at `i` changes the meaning of the clause.
+fn meant(clause: &Clause, draft: &Draft, i: usize) -> Option<&'static str> {
+    let phrases = clause.phrases();
+    let next = phrases[i + 1..].iter().map(|p| &p.sense).find(|s| !matches!(s, Sense::Article | Sense::Quality(..)));
+    Some(match &phrases[i].sense {
+        // "The steel vase" only describes, where nobody makes it of that.
+        Sense::Material(_) if matches!(next, Some(Sense::Objects(_) | Sense::It)) => return None,
+        Sense::Material(_) => "one thing or part is of one material at a time: \"the top is steel\", \"turn it into water at 1 s\"",
+        Sense::Stuff(_) => {
+            "stuff that an event or a part brings is more or less of something: \"make the sand stickier\"; \"undo that\" takes it back"
+        }
+        Sense::Part(_) => match clause.verb() {
+            Some(Verb::Stop) => "nothing is cut off; \"the top is sand\", \"the top crumbles at 1 s\" change a part",
+            _ => {
+                "forces and motions act on the whole of a thing; a part is held, \"hold the base\", is of other stuff, \"the top is rubber\", or changes, \
+                 \"the top melts at 1 s\""
+            }
+        },
+        Sense::Negation => "\"don't spin\", \"no jump\", \"stop the wind\" and \"undo\" deny something",
+        Sense::Except => "what is left out is a part, and what is asked for a material from the start: \"everything except the top is steel\"",
+        Sense::Limit => "parts are said by name: \"the lower half\", \"the upper third\", \"the base\", \"the flowers\"",
+        Sense::Ends => "say when: \"stop the wind at 1 s\", \"wind from the left until 1 s\"",
+        Sense::Change(_) => "more and less go with what there is: \"less stiff\", \"a weaker wind\", \"half the gravity\"",
+        Sense::Replace => "\"replace the water with honey\" says what and by what",
+        Sense::Moment(moment) => moment_hint(*moment, clause.verb())?,
+        Sense::Deed => "\"push\", \"drop\", \"throw\", \"spin\", \"pull\", \"hold\", \"stop\", \"melt\" are",
+        _ if beside::waits_for(&phrases[i], draft.tokens()) => "until what? only a time is understood, \"until 1 s\"",
+        Sense::Filler if draft.words(phrases[i].span.clone()).eq_ignore_ascii_case("only") => {
+            let (at, _) = phrases.iter().enumerate().skip(i + 1).find(|(_, p)| {
+                !matches!(p.sense, Sense::Article | Sense::Preposition(_) | Sense::Filler | Sense::Quality(..) | Sense::Material(_))
+            })?;
+            let noun = matches!(phrases[at].sense, Sense::Unknown | Sense::Part(_) | Sense::Scenery(_));
+            if !noun || !clause.left_indices().any(|left| left == at) {
+                return None;
+            }
+            "forces and motions act on the whole of a thing; \"only\" goes with parts that are of other stuff, \"only the top is steel\""
+        }
+        _ => return None,
+    })
+}
+
+fn moment_hint(moment: Moment, verb: Option<Verb>) -> Option<&'static str> {
+    Some(match (moment, verb) {
+        (Moment::LaterLanding | Moment::AfterLanding | Moment::OnTheWay, _) => super::clauses::when::no_occasion(moment),
+        (_, Some(Verb::Field(Field::Explode))) => "a blast has a time and no occasion: \"explode at 1 s\"",
+        _ => return None,
+    })
+}
+
+/// Amounts and times that are left.
+fn amount(clause: &Clause, draft: &Draft) -> Option<Refusal> {
     let left: Vec<_> = clause.left().filter(|p| is_amount(&p.sense)).collect();
     let first = left.first()?;
     let said: Vec<String> = left.iter().map(|p| format!("\"{}\"", draft.words(p.span.clone()))).collect();
@@ -65,6 +129,8 @@ fn dimension(dimension: Dimension) -> &'static str {
         Dimension::AngularSpeed => "rates go with \"spin it at 2 turns a second\", \"orbit at 30 degrees a second\"",
         Dimension::Pressure => "a stiffness is set by \"stiffness 30 kPa\"",
         Dimension::Density => "a density is set by \"density 500 kg/m³\"",
+        Dimension::Viscosity => "a viscosity goes with liquids, \"viscosity 5 Pa s\"",
+        Dimension::Tension => "a surface tension goes with liquids, \"surface tension 0.07 N/m\"",
         Dimension::Mass => "a mass follows from the density, \"density 500 kg/m³\"",
         Dimension::FrameRate => "\"at 100 fps\" is the frames a second",
         Dimension::Percent => "it goes with more and less, \"20 % softer\"",

@@ -39,6 +39,14 @@ const ALL: &[Property] = &[
 pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
     let mut any = false;
     // Numbers with units that belong to one property only need no name.
+    // "5 Pa s" is of nothing else.
+    for (dimension, property) in [(Dimension::Viscosity, Property::Viscosity), (Dimension::Tension, Property::Tension)] {
+        if clause.has(|s| matches!(s, Sense::Measure(q, _) if q.dimension == dimension)) {
+            clause.take_sense(&Sense::Property(property));
+            amounts::set(property, clause, draft)?;
+            any = true;
+        }
+    }
     let of_strength = clause.has(|s| matches!(s, Sense::Property(p) if amounts::ALL.contains(p)));
     if !of_strength && let Some((young, _)) = clause.take_measure(Dimension::Pressure) {
         clause.take_scale(&[Property::Stiffness, Property::Hardness]);

@@ -4,7 +4,7 @@ use super::super::clause::{Clause, Scale, step};
 use super::super::draft::{Draft, Refusal};
 use super::super::numbers::Dimension;
 use super::super::say;
-use super::super::sense::Property;
+use super::super::sense::{Property, Sense};
 use super::parts::{self, Owner};
 use phystalk::spec::{Material, limits};
 
@@ -110,7 +110,14 @@ pub fn scale(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result<(),
 
 /// One by its name, with a number.
 pub fn set(property: Property, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
-    let value = clause.take_measure(Dimension::Pressure).or_else(|| clause.take_measure(Dimension::Angle).map(|(a, lead)| (a.to_degrees(), lead)));
+    let value = match property {
+        Property::Viscosity => clause.take_measure(Dimension::Viscosity),
+        Property::Tension => clause.take_measure(Dimension::Tension),
+        _ => None,
+    };
+    let value = value
+        .or_else(|| clause.take_measure(Dimension::Pressure))
+        .or_else(|| clause.take_measure(Dimension::Angle).map(|(a, lead)| (a.to_degrees(), lead)));
     let value = value.or_else(|| clause.take_measure(Dimension::Plain)).map(|(value, _)| value);
     for owner in parts::owners(clause, draft)? {
         let amount = find(property, draft, &owner)?;
@@ -138,5 +145,9 @@ fn find(property: Property, draft: &mut Draft, owner: &Owner) -> Result<&'static
 
 /// Whether "sticky" says something of what a clause is about, and not of the ground.
 pub fn sticks(clause: &mut Clause, draft: &mut Draft) -> bool {
+    let stuff = clause.phrases().iter().find_map(|p| if let Sense::Stuff(name) = p.sense { Some(name) } else { None });
+    if let Some(name) = stuff {
+        return parts::owners_of(name, draft).iter().all(|owner| amount(Property::Stick, draft.stuff(owner)).is_some());
+    }
     draft.subjects(clause).is_ok_and(|objects| objects.iter().all(|&o| amount(Property::Stick, draft.material(o)).is_some()))
 }

@@ -4,10 +4,10 @@ use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
 use super::super::say;
 use super::super::sense::{Fate, Property};
-use super::parts;
+use super::parts::{self, Owner};
 use super::stuff::{become_stuff, freezes};
 use super::when::When;
-use phystalk::spec::{Activation, Elastic, Liquid, Material, Muscle, Sand, Wave, presets};
+use phystalk::spec::{Activation, Elastic, Event, Liquid, Material, Muscle, Sand, Wave, presets};
 
 /// Time in which a melt of any size sinks together: its viscosity is its weight over its foot times this.
 const MELT_S: f64 = 0.2;
@@ -18,17 +18,21 @@ const PULSE: (f64, f64) = (0.2, 1.0);
 
 /// Reads one such verb with all that belongs to it.
 pub fn understand(fate: Fate, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
-    let part = parts::take(clause);
-    let objects = draft.subjects(clause)?;
-    let when = When::take(clause, draft, objects[0])?;
+    let owners = parts::owners(clause, draft)?;
+    let Some(first) = owners.first().map(|owner| owner.object) else { return Ok(()) };
+    let when = When::take(clause, draft, first)?;
     // "Melts slowly" is a thick melt.
-    let pace = if fate == Fate::Melt { clause.take_scale(&[Property::Speed]).map_or(1.0, |s| s.ratio) } else { 1.0 };
-    for object in objects {
-        let owner = parts::owner(draft, object, part);
+    let scale = if fate == Fate::Melt { clause.take_scale(&[Property::Speed]) } else { None };
+    let pace = scale.map_or(1.0, |s| s.ratio);
+    for owner in owners {
+        let object = owner.object;
         let name = draft.name(object);
+        if scale.is_some_and(|s| s.compared) && when == When::Start && melts_already(pace, &owner, draft) {
+            continue;
+        }
         let density_kg_m3 = draft.stuff(&owner).density_kg_m3();
         match fate {
-            Fate::Melt if draft.spec.events.iter().any(|e| freezes(e, &name)) && when != When::Start => {
+            Fate::Melt if when != When::Start && thaws(&owner, draft) => {
                 draft.happen(object, None, when, "thaw", |event| event.release = true, |event| event.release);
                 draft.gloss.push(format!("{name} is what it was before it froze,{}", when.said()));
             }
@@ -72,4 +76,36 @@ pub fn understand(fate: Fate, clause: &mut Clause, draft: &mut Draft) -> Result<
         }
     }
     Ok(())
+}
+
+/// Whether a melt only undoes a freeze: one of the same part, and the only one, for a release undoes them all.
+fn thaws(owner: &Owner, draft: &Draft) -> bool {
+    let thing = &draft.spec.objects[owner.object];
+    let part = owner.part.map(|part| &thing.parts[part].name);
+    let mut frozen = draft.spec.events.iter().filter(|e| freezes(e, &thing.name)).peekable();
+    frozen.peek().is_some() && frozen.all(|e| part.is_none() || e.part.as_ref() == part)
+}
+
+/// "Melt faster": the melt that there is, thinner. Whether there is one.
+fn melts_already(pace: f64, owner: &Owner, draft: &mut Draft) -> bool {
+    let thing = &draft.spec.objects[owner.object];
+    let (name, part) = (thing.name.clone(), owner.part.map(|part| thing.parts[part].name.clone()));
+    let event = draft.spec.events.iter().rposition(|e| e.object == name && e.part == part && matches!(e.material, Some(Material::Liquid(_))));
+    let owner = Owner { event, ..owner.clone() };
+    let Material::Liquid(liquid) = draft.stuff(&owner) else { return false };
+    let before = liquid.viscosity_pa_s;
+    liquid.viscosity_pa_s = say::tidy((before * pace.powf(-PACE)).clamp(1.0, 1e5));
+    let after = liquid.viscosity_pa_s;
+    draft.gloss.push(format!("the melt of {} has a viscosity of {} Pa·s instead of {}", owner.said, say::short(after), say::short(before)));
+    true
+}
+
+/// Whether an event is of that kind: "don't melt it after all".
+pub fn is_of(fate: Fate, event: &Event) -> bool {
+    match fate {
+        Fate::Freeze => event.freeze,
+        Fate::Melt | Fate::Dissolve => matches!(event.material, Some(Material::Liquid(_))) || fate == Fate::Melt && event.name.starts_with("thaw"),
+        Fate::Crumble | Fate::Shatter => matches!(event.material, Some(Material::Sand(_))),
+        Fate::Pulse => matches!(event.material, Some(Material::Muscle(_))),
+    }
 }

@@ -1,6 +1,7 @@
 //! Fields: wind, swirls, blasts, drag of air and water, swinging and shaking, motors.
 
 use super::super::clause::Clause;
+use super::super::directions::Heading;
 use super::super::draft::{Draft, Refusal};
 use super::super::numbers::Dimension;
 use super::super::say;
@@ -15,6 +16,9 @@ use std::f64::consts::TAU;
 const WIND_M_S: f64 = 6.0;
 /// Speed of a swirl that nobody gave, for an object of one metre.
 const SWIRL_M_S: f64 = 3.0;
+/// How fast matter follows the air of a swirl, and how many times its weight one that lifts pulls at what stands.
+const SWIRL_PER_S: f64 = 2.0;
+const LIFTS: f64 = 1.5;
 /// Speed of a blast that nobody gave, for an object of one metre.
 const BLAST_M_S: f64 = 5.0;
 /// Pull towards the middle that nobody gave.
@@ -41,10 +45,18 @@ pub fn understand(field: Field, clause: &mut Clause, draft: &mut Draft) -> Resul
     // A blast is over at once: "for 2 s" is how long the run lasts.
     let span = if field == Field::Explode { (at_s.unwrap_or(0.0), Until::End) } else { lasts(clause, at_s)? };
     let aimed = matches!(field, Field::Swirl | Field::Motor | Field::Sway | Field::Shake);
-    if !aimed && clause.has(|s| matches!(s, Sense::View(_))) && !clause.has(|s| *s == Sense::Verb(Verb::Look)) {
-        return Err("that has no side that it comes from; \"push it from below\" and \"wind from the left\" have".to_owned());
+    if clause.has(|s| matches!(s, Sense::View(_))) && !clause.has(|s| *s == Sense::Verb(Verb::Look)) {
+        return Err(
+            "that has no side that it comes from; \"push it from below\" and \"wind from the left\" have, and \"hang it from the top\" holds it so"
+                .to_owned(),
+        );
     }
+    if !aimed && clause.has(|s| matches!(s, Sense::Direction(Direction::Towards | Direction::Away))) {
+        return Err("that goes to or from its own middle; \"pull it towards the camera\" moves it there".to_owned());
+    }
+    let lifts = field == Field::Swirl && clause.phrases().iter().any(|p| p.sense == Sense::Verb(Verb::Lift));
     let ask = Ask {
+        lifts,
         speed: clause.take_measure(Dimension::Speed).map(|(v, _)| v),
         rate: clause.take_measure(Dimension::AngularSpeed).map(|(w, _)| w),
         acceleration: clause.take_measure(Dimension::Acceleration).map(|(a, _)| a),
@@ -59,6 +71,7 @@ pub fn understand(field: Field, clause: &mut Clause, draft: &mut Draft) -> Resul
 
 /// What a clause says of a field.
 struct Ask {
+    lifts: bool,
     speed: Option<f64>,
     rate: Option<f64>,
     acceleration: Option<f64>,
@@ -82,10 +95,12 @@ fn one(field: Field, ask: &Ask, span: (f64, Until), draft: &mut Draft, object: u
     match field {
         Field::Swirl => {
             let speed_m_s = ask.turn() * speed(SWIRL_M_S);
-            let vortex = Vortex { centre_m: Auto::Auto, axis: [0.0, 0.0, 1.0], speed_m_s, radius_m, lift_m_s: 0.0, drag_per_s: 2.0 };
+            let lift_m_s = if ask.lifts { say::tidy(LIFTS * draft.gravity_for_heights_m_s2() / SWIRL_PER_S) } else { 0.0 };
+            let vortex = Vortex { centre_m: Auto::Auto, axis: [0.0, 0.0, 1.0], speed_m_s, radius_m, lift_m_s, drag_per_s: SWIRL_PER_S };
             put(draft, &name, "swirl", span, |force| force.vortex = Some(vortex));
             let axis = axis_name(DVec3::Z * speed_m_s.signum());
-            draft.gloss.push(format!("air swirls round {name} at {}, about {axis}{when}", say::speed(speed_m_s.abs())));
+            let lift = if ask.lifts { format!(", and up at {}, which lifts it", say::speed(lift_m_s)) } else { String::new() };
+            draft.gloss.push(format!("air swirls round {name} at {}, about {axis}{lift}{when}", say::speed(speed_m_s.abs())));
         }
         Field::Explode => {
             let speed_m_s = speed(BLAST_M_S);
@@ -156,6 +171,8 @@ fn to_and_fro(unit: DVec3, amount: f64, angular: f64, from_s: f64) -> String {
 /// Wind, as moving air.
 pub fn wind(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<f64>) -> Result<(), Refusal> {
     let speed = clause.take_measure(Dimension::Speed).map(|(v, _)| v);
+    let from_start = clause.has(|s| matches!(s, Sense::Span(..)));
+    let timed = at_s.is_some() || clause.has(|s| matches!(s, Sense::For(_) | Sense::Until(_) | Sense::Span(..)));
     let span = lasts(clause, at_s)?;
     let gust = if clause.take_sense(&Sense::Gusty) { GUSTY } else { 0.0 };
     let mut directions = clause.take_directions();
@@ -174,9 +191,30 @@ pub fn wind(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Opt
             draft.gloss.push(format!("the wind on {name} has {} instead of {}", say::speed(before * strength), say::speed(before)));
             continue;
         }
+        // One that nobody describes again is the one that blows: "the wind only for the first second".
+        let blows = draft.spec.forces.iter_mut().rev().find(|f| f.object == name && f.wind.is_some());
+        if let Some(force) = blows.filter(|_| scale.is_none() && strength == 1.0 && directions.is_empty() && speed.is_none()) {
+            if timed {
+                // "Until 1 s" says nothing of when it begins.
+                (force.from_s, force.to_s) = if span.0 == 0.0 && !from_start { (force.from_s, span.1) } else { span };
+            }
+            if let Some(wind) = &mut force.wind {
+                (wind.gust, wind.turbulence) = (wind.gust.max(gust), wind.turbulence.max(0.5 * gust));
+            }
+            let span = (force.from_s, force.to_s);
+            draft.gloss.push(format!("the wind on {name} blows as it did{}", said_span(span)));
+            continue;
+        }
+        if scale.is_some_and(|s| s.compared && s.sign < 0.0) && directions.is_empty() && speed.is_none() {
+            return Err(format!("no wind blows on {name} that could be less: \"a gentle wind from the left\""));
+        }
         let assumed = if directions.is_empty() { " (no direction said)" } else { "" };
         let wanted = if directions.is_empty() { &[Direction::Forward][..] } else { &directions };
-        let heading = draft.frame(object).heading(wanted).ok_or("those directions cancel out")?;
+        let blew = draft.spec.forces.iter().rev().find(|f| f.object == name).and_then(|f| f.wind.as_ref()).map(|w| DVec3::from(w.velocity_m_s));
+        let (heading, assumed) = match blew.and_then(DVec3::try_normalize).filter(|_| directions.is_empty()) {
+            Some(unit) => (Heading { unit, said: "the way it blew".to_owned() }, ""),
+            None => (draft.frame(object).heading(wanted).ok_or("those directions cancel out")?, assumed),
+        };
         let speed = speed.unwrap_or(WIND_M_S * strength * draft.size_m(object).sqrt());
         let velocity_m_s = say::tidy3(heading.unit * speed);
         let wind = Wind { velocity_m_s, drag_per_s: 1.0, gust, turbulence: 0.5 * gust, eddy_m: 0.3 };

@@ -4,7 +4,7 @@ use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
 use super::super::numbers::Dimension;
 use super::super::say;
-use super::super::sense::{Pose, Sense, Verb};
+use super::super::sense::{Part, Pose, Sense, Verb};
 use super::parts::{self, Portion};
 use super::when::When;
 use phystalk::spec::{Event, Force, Pin, Region, Until};
@@ -12,7 +12,7 @@ use phystalk::spec::{Event, Force, Pin, Region, Until};
 /// "hold the base", "pin the top from 0.2 s to 1 s".
 pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let objects = draft.subjects(clause)?;
-    let part = parts::take(clause);
+    let named = parts::take_all(clause);
     clause.take_sense(&Sense::Ground);
     clause.take_directions();
     let span = clause.take(|s| match s {
@@ -22,7 +22,7 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let from_s = span.map(|s| s.0).or_else(|| clause.take_at()).unwrap_or(0.0);
     let until = span.map(|s| s.1).or_else(|| clause.take_until()).or_else(|| clause.take_for().map(|f| from_s + f));
     let to_s = until.map_or(Until::End, |to| Until::Time(say::tidy(to)));
-    for &object in &objects {
+    for (&object, part) in objects.iter().flat_map(|object| named.iter().map(move |part| (object, *part))) {
         let whole = Portion { stem: "hold", region: Region::Above(0.0), said: "all", chosen: None };
         let Portion { stem, region, said, .. } = part.map_or(whole, |part| parts::portion(draft, object, part));
         let object = draft.name(object);
@@ -43,10 +43,14 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
 /// "let go at 1 s", "let go".
 pub fn release(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let objects = draft.subjects(clause)?;
-    parts::take(clause);
+    let part = parts::take(clause);
     let when = When::take(clause, draft, objects[0])?;
     for &object in &objects {
         let name = draft.name(object);
+        if let Some(part) = part {
+            release_part(part, when, draft, object)?;
+            continue;
+        }
         let frozen = draft.spec.events.iter().any(|e| super::stuff::freezes(e, &name));
         if !frozen && !draft.spec.pins.iter().any(|p| p.object == name) {
             return Err(format!("nothing holds {name}: \"hold the base\" does"));
@@ -67,6 +71,26 @@ pub fn release(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
         }
         draft.gloss.push(format!("{name} is let go{}", when.said()));
     }
+    Ok(())
+}
+
+/// "let go of the top at 1 s": what holds that part, and nothing else.
+fn release_part(part: Part, when: When, draft: &mut Draft, object: usize) -> Result<(), Refusal> {
+    let name = draft.name(object);
+    let Portion { region, said, .. } = parts::portion(draft, object, part);
+    let others = draft.spec.pins.iter().any(|p| p.object == name && p.region != region);
+    let Some(at) = draft.spec.pins.iter().position(|p| p.object == name && p.region == region) else {
+        return Err(format!("nothing holds {said} of {name}"));
+    };
+    match when {
+        When::At(at_s) => draft.spec.pins[at].to_s = Until::Time(at_s),
+        When::Start => {
+            draft.spec.pins.remove(at);
+        }
+        When::Impact if others => return Err(format!("an impact lets go of all that holds {name}; one hold ends at a time, \"at 1 s\"")),
+        When::Impact => draft.happen(object, None, when, "release", |event| event.release = true, |event| event.release),
+    }
+    draft.gloss.push(format!("{said} of {name} is let go{}", when.said()));
     Ok(())
 }
 
@@ -104,7 +128,7 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
             }
             Some(Verb::Pull | Verb::Blow) => {
                 draft.spec.forces.retain(|f| f.object != name || !f.name.starts_with(stem(verb.unwrap_or(Verb::Pull))));
-                "is pulled by nothing"
+                if verb == Some(Verb::Blow) { "has no wind" } else { "is pulled by nothing" }
             }
             Some(Verb::Field(field)) => {
                 draft.spec.forces.retain(|f| f.object != name || !f.name.starts_with(stem(Verb::Field(field))));
@@ -136,7 +160,16 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
                 rest(draft, object);
                 "stands still"
             }
-            Some(_) => return Err("that cannot be stopped".to_owned()),
+            Some(Verb::Change(fate)) => {
+                let part = parts::take(clause).map(|part| parts::portion(draft, object, part).stem);
+                let brings = |e: &Event| e.object == name && part.is_none_or(|part| e.part.as_deref() == Some(part)) && super::fate::is_of(fate, e);
+                if !draft.spec.events.iter().any(brings) {
+                    return Err(format!("no event does that to {name}; \"undo\" takes back what is so from the start"));
+                }
+                draft.spec.events.retain(|e| !brings(e));
+                "keeps its stuff"
+            }
+            Some(_) => return Err("that cannot be stopped; \"undo that\" takes the newest turn back".to_owned()),
         };
         let at = at_s.map_or(String::new(), |at| format!(" at {}", say::seconds(at)));
         draft.gloss.push(format!("{name} {said}{at}"));

@@ -19,6 +19,7 @@ pub mod world;
 
 use super::clause::Clause;
 use super::draft::{Draft, Refusal};
+use super::numbers::Dimension;
 use super::sense::{Field, Preposition, Sense, Unbuilt, Verb};
 use phystalk::spec::presets;
 
@@ -26,17 +27,22 @@ use phystalk::spec::presets;
 pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     refuse_unbuilt(clause, draft)?;
     if clause.has(|s| *s == Sense::Condition) {
-        return Err("conditions are not built yet: give a time, as in \"at 0.5 s\"".to_owned());
+        return Err("conditions are not built yet, but for \"when it lands\": give a time, as in \"at 0.5 s\" and \"until 1 s\"".to_owned());
     }
     if turns::understand(clause, draft)? {
         return Ok(());
     }
     let stuff = |s: &Sense| if let Sense::Material(name) = s { Some(*name) } else { None };
-    // "Onto the stone floor" says nothing of the thing.
-    if let Some(name) = clause.take_before(&Sense::Ground, stuff) {
+    // "Onto the stone floor", "a wooden box" say nothing of the thing.
+    if let Some(name) = clause.take_before(|s| *s == Sense::Ground, stuff) {
         draft.gloss.push(format!("that the ground is of {name} is not heeded: \"slippery\" and \"bouncier\" set its friction and its restitution"));
     }
+    let scenery = |s: &Sense| matches!(s, Sense::Scenery(_));
+    if let Some(name) = clause.take_before(scenery, stuff) {
+        draft.gloss.push(format!("that what is put there is of {name} is not heeded: it has friction and restitution only"));
+    }
     refuse_places(clause, draft)?;
+    refuse_negative(clause, draft)?;
     world::understand(clause, draft);
     if scenery::remove(clause, draft)? {
         return Ok(());
@@ -59,7 +65,7 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     if camera::is_about_camera(clause) {
         return camera::understand(clause, draft);
     }
-    let material = clause.take(stuff);
+    let material = stuff::take_role(clause, draft)?;
     // A pose first: a drop goes by the lowest point of the turned thing.
     let pose = clause.take(|s| match s {
         Sense::Pose(pose) => Some(*pose),
@@ -68,8 +74,8 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     if let Some(pose) = pose {
         place::pose(pose, clause, draft)?;
     }
-    if let Some(name) = material {
-        stuff::material(name, clause, draft)?;
+    if let Some(role) = material {
+        stuff::material(role, clause, draft)?;
     }
     if let Some(proxy) = clause.take(|s| if let Sense::Proxy(proxy) = s { Some(*proxy) } else { None }) {
         stuff::proxy(proxy, clause, draft)?;
@@ -100,7 +106,7 @@ fn refuse_places(clause: &Clause, draft: &Draft) -> Result<(), Refusal> {
     for (i, phrase) in phrases.iter().enumerate() {
         let words = draft.words(phrase.span.clone());
         match (&phrase.sense, before(i)) {
-            (Sense::Surface(_), Some(Sense::Preposition(Preposition::Into | Preposition::Of))) => {
+            (Sense::Surface(_), lead) if is_stuff(&words, lead, clause) => {
                 return Err(format!(
                     "{words} is a surface, not yet a material: \"on {words}\"; \"freeze it\" makes a solid of the shape that it has"
                 ));
@@ -117,6 +123,41 @@ fn refuse_places(clause: &Clause, draft: &Draft) -> Result<(), Refusal> {
     Ok(())
 }
 
+/// Whether the name of a surface stands for what a thing is of: "make it ice", not "on ice" and not "the floor is ice".
+fn is_stuff(words: &str, lead: Option<&Sense>, clause: &Clause) -> bool {
+    let noun = matches!(words.to_lowercase().as_str(), "ice" | "carpet" | "sandpaper");
+    let under = matches!(lead, Some(Sense::Preposition(Preposition::On | Preposition::Along | Preposition::To) | Sense::Unknown | Sense::Limit));
+    matches!(lead, Some(Sense::Preposition(Preposition::Into | Preposition::Of))) || noun && !under && !clause.has(|s| *s == Sense::Ground)
+}
+
+/// Refuses lengths and amounts below zero where nothing has another way: a drop "from -1 m", "-5 kPa".
+fn refuse_negative(clause: &Clause, draft: &Draft) -> Result<(), Refusal> {
+    let moved = clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(Verb::Move | Verb::Lift)));
+    let below = clause.phrases().iter().find(|p| match p.sense {
+        Sense::Measure(q, _) if q.value < 0.0 => match q.dimension {
+            Dimension::Length => !moved,
+            Dimension::Speed => false,
+            _ => matches!(q.dimension, Dimension::Pressure | Dimension::Density | Dimension::Viscosity | Dimension::Tension | Dimension::Time),
+        },
+        Sense::At(t) | Sense::For(t) | Sense::Until(t) => t < 0.0,
+        Sense::Span(from, _) => from < 0.0,
+        _ => false,
+    });
+    match below {
+        Some(phrase) => {
+            let instead = match phrase.sense {
+                Sense::Measure(q, _) if q.dimension == Dimension::Length => {
+                    "heights and distances are said with their way, \"30 cm down\", \"1 m to the right\""
+                }
+                Sense::Measure(q, _) if q.dimension != Dimension::Time => "less of it is \"softer\", \"lighter\", \"20 % less\"",
+                _ => "times count from the start on",
+            };
+            Err(format!("{} is below zero: {instead}", draft.words(phrase.span.clone())))
+        }
+        None => Ok(()),
+    }
+}
+
 /// The verbs, in their order.
 fn verbs(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     while let Some(verb) = next_verb(clause) {
@@ -125,6 +166,8 @@ fn verbs(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
             Verb::Fall if place::falls_by_itself(clause, draft) => {}
             Verb::Fall | Verb::Drop => place::drop(clause, draft)?,
             Verb::Topple => place::topple(clause, draft)?,
+            // "A tornado that lifts it up": the swirl does.
+            Verb::Lift if clause.phrases().iter().any(|p| p.sense == Sense::Verb(Verb::Field(Field::Swirl))) => {}
             Verb::Lift => place::lift(clause, draft)?,
             Verb::Move => place::shift(clause, draft)?,
             Verb::Turn | Verb::Tilt => place::turn(verb, clause, draft)?,
@@ -158,7 +201,10 @@ fn denied(clause: &mut Clause) -> Result<bool, Refusal> {
             clause.take_sense(&Sense::Negation);
             return Ok(true);
         }
-        return Err("a denial that is not understood: \"don't spin\", \"no jump\", \"undo\" are".to_owned());
+        return Err(
+            "a denial that is not understood: \"don't spin\", \"no jump\", \"stop the wind\", \"undo\" are; what it is of is said without \"not\""
+                .to_owned(),
+        );
     }
     let stops = clause.has(|s| matches!(s, Sense::Verb(Verb::Stop)));
     if stops {
@@ -176,7 +222,7 @@ fn refuse_unbuilt(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
         .enumerate()
         .filter_map(|(i, phrase)| match phrase.sense {
             Sense::Unbuilt(what) => {
-                let describes = matches!(clause.phrases().get(i + 1).map(|p| &p.sense), Some(Sense::Objects(_)));
+                let describes = is_quality(what) && matches!(clause.phrases().get(i + 1).map(|p| &p.sense), Some(Sense::Objects(_)));
                 Some((what, draft.words(phrase.span.clone()), describes))
             }
             _ => None,
@@ -190,6 +236,11 @@ fn refuse_unbuilt(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
         draft.gloss.push(reason);
     }
     Ok(())
+}
+
+/// Whether a word that is not built yet says what a thing is like, and not what is done.
+fn is_quality(what: Unbuilt) -> bool {
+    !matches!(what, Unbuilt::Filling | Unbuilt::Front | Unbuilt::Mover | Unbuilt::Pendulum)
 }
 
 /// Why something is not there yet, and what is.
@@ -211,6 +262,16 @@ pub fn refusal(what: Unbuilt, words: &str) -> Refusal {
         Unbuilt::Deform => format!("{words}: only pushes, pulls, fields and pins move things; \"softer\" and \"push it\" make it wobble"),
         Unbuilt::Look => format!("{words}: colours and light are not built yet; motion, material, world and camera are"),
         Unbuilt::Scene => format!("{words}: changing the size or number of things is not built yet"),
+        Unbuilt::Filling => {
+            format!("{words}: nothing is filled or poured on yet, and no inside is of other stuff; \"the lower half is water\" makes a part of it")
+        }
+        Unbuilt::Front => format!("{words}: a part changes as one; \"the top melts at 0.5 s, the lower half melts at 1 s\" is one after the other"),
+        Unbuilt::Mover => {
+            format!(
+                "{words}: what is put around stands still and holds nothing; \"put a ball in front of it, then push it forward\" lets it run into one"
+            )
+        }
+        Unbuilt::Pendulum => format!("{words}: \"hang it from the top and push it to the left\" swings so"),
         Unbuilt::Playback => format!("{words}: playback is not part of a simulation; \"at 200 fps\" gives more frames a second"),
     }
 }

@@ -55,7 +55,7 @@ fn lasting(clause: &Clause) -> bool {
 
 /// How strong a verb is to be: adverbs and adjectives together, 1 where there are none.
 pub fn strength(verb: Verb, clause: &mut Clause) -> (f64, Option<Scale>) {
-    let scale = clause.take_scale(qualifies(verb));
+    let scale = clause.take_scale(qualifies(verb)).or_else(|| clause.take_more(verb));
     let adverbs = clause.take_vigour();
     let hard = match scale {
         // "hard" is an adverb here, not a material; "very hard" is hard twice over.

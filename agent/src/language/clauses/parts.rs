@@ -1,5 +1,6 @@
 //! Parts of an object as words call them: shares of its height, halves, flowers and their pot.
 
+use super::super::beside::is_of;
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
 use super::super::sense::{Direction, Part, Sense};
@@ -13,6 +14,8 @@ pub struct Owner {
     pub object: usize,
     /// Index of the part.
     pub part: Option<usize>,
+    /// Index of the event that brings the stuff that is meant.
+    pub event: Option<usize>,
     /// How it is said: "vase", "the upper half of vase".
     pub said: String,
 }
@@ -32,6 +35,9 @@ pub struct Portion {
 impl Draft<'_> {
     /// What an owner is made of.
     pub fn stuff(&mut self, owner: &Owner) -> &mut Material {
+        if let Some(event) = owner.event {
+            return self.spec.events[event].material.get_or_insert_default();
+        }
         let object = &mut self.spec.objects[owner.object];
         match owner.part {
             Some(part) => &mut object.parts[part].material,
@@ -41,6 +47,9 @@ impl Draft<'_> {
 
     /// Where its material is in the spec.
     pub fn stuff_path(&self, owner: &Owner) -> String {
+        if let Some(event) = owner.event {
+            return format!("event.{}.material", self.spec.events[event].name);
+        }
         let object = &self.spec.objects[owner.object];
         match owner.part {
             Some(part) => format!("object.{}.part.{}.material", object.name, object.parts[part].name),
@@ -57,34 +66,73 @@ pub fn take(clause: &mut Clause) -> Option<Part> {
     })
 }
 
-/// Whom a clause is about: objects, or the part of each that it names, which is made where there is none.
+/// The parts that a clause names; none where it is about the whole.
+pub fn take_all(clause: &mut Clause) -> Vec<Option<Part>> {
+    let parts: Vec<Part> = std::iter::from_fn(|| take(clause)).collect();
+    let mut each: Vec<Option<Part>> = Vec::new();
+    for part in parts {
+        match part {
+            Part::Ends => each.extend([Some(Part::Top), Some(Part::Base)]),
+            part => each.push(Some(part)),
+        }
+    }
+    each.dedup();
+    if each.is_empty() { vec![None] } else { each }
+}
+
+/// Whom a clause is about: objects, or the parts of each that it names, which are made where there are none; or whatever
+/// is of the stuff that it names.
 pub fn owners(clause: &mut Clause, draft: &mut Draft) -> Result<Vec<Owner>, Refusal> {
-    let part = take(clause);
+    let stuff = clause.take(|s| match s {
+        Sense::Stuff(name) => Some(*name),
+        _ => None,
+    });
+    if let Some(name) = stuff {
+        return Ok(owners_of(name, draft));
+    }
+    let parts = take_all(clause);
     let objects = draft.subjects(clause)?;
-    Ok(objects.into_iter().map(|object| owner(draft, object, part)).collect())
+    Ok(objects
+        .into_iter()
+        .flat_map(|object| parts.iter().map(move |part| (object, *part)))
+        .map(|(object, part)| owner(draft, object, part))
+        .collect())
+}
+
+/// Whatever is of some stuff: objects, parts of them, and what events make of either.
+pub fn owners_of(name: &str, draft: &Draft) -> Vec<Owner> {
+    let mut owners = Vec::new();
+    for (object, thing) in draft.spec.objects.iter().enumerate() {
+        if is_of(&thing.material, name) {
+            owners.push(Owner { object, part: None, event: None, said: thing.name.clone() });
+        }
+        let parts = thing.parts.iter().enumerate().filter(|(_, p)| is_of(&p.material, name));
+        owners.extend(parts.map(|(part, p)| Owner { object, part: Some(part), event: None, said: format!("{} of {}", p.name, thing.name) }));
+        for (event, happens) in draft.spec.events.iter().enumerate().filter(|(_, e)| e.object == thing.name) {
+            if happens.material.as_ref().is_some_and(|m| is_of(m, name)) {
+                let said = format!("what {} makes of {}", happens.name, thing.name);
+                owners.push(Owner { object, part: None, event: Some(event), said });
+            }
+        }
+    }
+    owners
 }
 
 /// An object, or the named part of it.
 pub fn owner(draft: &mut Draft, object: usize, part: Option<Part>) -> Owner {
     let name = draft.name(object);
-    let Some(part) = part else { return Owner { object, part: None, said: name } };
+    let Some(part) = part else { return Owner { object, part: None, event: None, said: name } };
     // The parts have what is theirs already.
     if part == Part::Rest {
-        return Owner { object, part: None, said: format!("the rest of {name}") };
+        return Owner { object, part: None, event: None, said: format!("the rest of {name}") };
     }
-    let mut portion = portion(draft, object, part);
-    // A twentieth is enough to hold it by, and too little to be of other stuff.
-    (portion.region, portion.said) = match part {
-        Part::Top => (Region::Above(0.666667), "the highest third"),
-        Part::Base => (Region::Below(0.333333), "the lowest third"),
-        _ => (portion.region, portion.said),
-    };
+    let portion = stuff_portion(draft, object, part);
     let said = format!("{} of {name}", portion.said);
     let parts = &draft.spec.objects[object].parts;
     // By its name first: a part that was given another border is still called what it was.
     let known = parts.iter().position(|p| p.name == portion.stem).or_else(|| parts.iter().position(|p| p.region == portion.region));
     if let Some(index) = known {
-        return Owner { object, part: Some(index), said };
+        return Owner { object, part: Some(index), event: None, said };
     }
     let said = match &portion.chosen {
         Some(chosen) => format!("{said} ({chosen})"),
@@ -93,7 +141,17 @@ pub fn owner(draft: &mut Draft, object: usize, part: Option<Part>) -> Owner {
     let thing = draft.object(object);
     let material = thing.material.clone();
     thing.parts.push(spec::Part { name: portion.stem.to_owned(), region: portion.region, material });
-    Owner { object, part: Some(thing.parts.len() - 1), said }
+    Owner { object, part: Some(thing.parts.len() - 1), event: None, said }
+}
+
+/// Where a part is that is of other stuff: a twentieth is enough to hold a thing by, and too little for that.
+fn stuff_portion(draft: &Draft, object: usize, part: Part) -> Portion {
+    let portion = portion(draft, object, part);
+    match part {
+        Part::Top => Portion { region: Region::Above(0.666667), said: "the highest third", ..portion },
+        Part::Base => Portion { region: Region::Below(0.333333), said: "the lowest third", ..portion },
+        _ => portion,
+    }
 }
 
 /// Where a part of an object is. Sides are the object's own, in the captured pose.
@@ -130,7 +188,7 @@ pub fn portion(draft: &Draft, object: usize, part: Part) -> Portion {
         Part::BackHalf => ("back-half", side(Direction::Backward), "the back half", None),
         Part::Flowers => ("flowers", Region::Above(seam), "flowers", chosen("above", "flowers are the upper")),
         Part::Pot => ("pot", Region::Below(seam), "pot", chosen("below", "pot is the lower")),
-        Part::Rest => ("rest", Region::Above(0.0), "all", None),
+        Part::Rest | Part::Ends => ("rest", Region::Above(0.0), "all", None),
     };
     Portion { stem, region, said, chosen }
 }
@@ -154,10 +212,10 @@ pub fn correct(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> 
     let parts = &draft.spec.objects[object].parts;
     let found = parts.iter().rposition(|p| stem.map_or_else(|| newest(p), |stem| p.name == stem));
     let Some(index) = found else { return Err("that part has no material of its own yet: \"the upper half is rubber\"".to_owned()) };
-    let border = portion(draft, object, border);
+    let border = stuff_portion(draft, object, border);
     let part = &mut draft.object(object).parts[index];
     part.region = border.region;
-    let line = format!("{} of {} is {}", part.name.clone(), draft.name(object), border.said);
+    let line = format!("what is called {} of {} is {}", part.name.clone(), draft.name(object), border.said);
     draft.gloss.push(line);
     Ok(true)
 }

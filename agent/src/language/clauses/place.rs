@@ -54,7 +54,7 @@ pub fn drop(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
             Some(scale) if scale.compared && before > 1e-3 => before * scale.ratio,
             _ => DROP_HEIGHTS * draft.facts(object).height_m() * scale.map_or(1.0, |s| s.ratio) * vigour,
         };
-        let gap = height.or(heights.map(|n| n * draft.facts(object).height_m())).unwrap_or(usual).abs();
+        let gap = height.or(heights.map(|n| n * draft.facts(object).height_m())).unwrap_or(usual);
         draft.set_gap_m(object, gap);
         draft.object(object).velocity_m_s[2] = 0.0;
         let floats = if draft.gravity_m_s2() < 1e-6 { "; without gravity it floats there" } else { "" };

@@ -4,7 +4,7 @@
 use super::super::clause::{Clause, Scale};
 use super::super::draft::{Draft, Refusal};
 use super::super::say;
-use super::super::sense::{Property, Sense};
+use super::super::sense::{Preposition, Property, Sense};
 use super::adjust::{comparative, is_light};
 use super::parts::{self, Owner};
 use super::when::{self, When};
@@ -117,32 +117,149 @@ fn moves(clause: &Clause) -> bool {
     clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(verb) if !is_light(verb, clause)))
 }
 
+/// What a clause says that something is made of.
+pub struct Role {
+    /// What it is to be.
+    becomes: &'static str,
+    /// What it is before: "from rubber into sand", "turn the steel vase into jelly".
+    was: Option<&'static str>,
+    /// "Replace the water with honey": what is there and is to be of other stuff.
+    instead: bool,
+}
+
+/// Takes what a clause says of materials: the last one that a verb leads to is what it becomes, the one that describes
+/// it, or that it comes from, is what it was.
+pub fn take_role(clause: &mut Clause, draft: &Draft) -> Result<Option<Role>, Refusal> {
+    let replaces = clause.has(|s| *s == Sense::Replace);
+    let phrases = clause.phrases();
+    let sense = |i: usize| phrases.get(i).map(|p| &p.sense);
+    let lead = |i: usize| phrases[..i].iter().rfind(|p| !matches!(p.sense, Sense::Article | Sense::Quality(..))).map(|p| &p.sense);
+    let mut earlier = Vec::new();
+    let mut later = Vec::new();
+    for i in clause.left_indices() {
+        let Some(Sense::Material(name)) = sense(i) else { continue };
+        let source = matches!(lead(i), Some(Sense::Preposition(Preposition::From) | Sense::Replace));
+        let describes = matches!(sense(i + 1), Some(Sense::Objects(_) | Sense::It | Sense::Material(_)));
+        if source || describes { earlier.push((i, *name)) } else { later.push((i, *name)) }
+    }
+    if let (true, Some((_, name)), [_, ..]) = (replaces, earlier.first(), &later[..])
+        && parts::owners_of(name, draft).is_empty()
+    {
+        return Err(format!("nothing here is of {name}: \"make it of {}\"", later[0].1));
+    }
+    let was = earlier.first().copied().filter(|_| !later.is_empty());
+    let Some((at, becomes)) = later.first().or(earlier.first()).copied() else { return Ok(None) };
+    clause.take_at_index(at);
+    if let Some((at, _)) = was {
+        clause.take_at_index(at);
+    }
+    clause.take_sense(&Sense::Replace);
+    Ok(Some(Role { becomes, was: was.map(|(_, name)| name), instead: replaces }))
+}
+
 /// A preset by its name; "elastic" alone is the automatic stiffness of things of no named material.
-pub fn material(name: &'static str, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+pub fn material(role: Role, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    let name = role.becomes;
     // "as soft as jelly", "the stiffness of rubber": that property alone.
     let like = clause.has(|s| *s == Sense::As) || clause.has(|s| matches!(s, Sense::Property(_)));
     let times = clause.has(|s| matches!(s, Sense::Factor(_)));
     let only = if like { clause.take_scale(&[Property::Stiffness, Property::Hardness, Property::Density]) } else { None };
     let mut stuff = presets::material(name).map(|preset| preset.material.clone()).or_else(|| Material::of_kind(name));
     let by_particles = smoothed(clause, stuff.as_mut());
-    let part = parts::take(clause);
-    let objects = draft.subjects(clause)?;
+    // What is said of the time of a motion is the motion's.
+    if !moves(clause) && clause.has(|s| matches!(s, Sense::Until(_) | Sense::Span(..))) {
+        return Err(format!("and what is it then? \"make it {name}, turn it into water at 1 s\""));
+    }
+    let spared = clause.take_after(&Sense::Except, |s| if let Sense::Part(part) = s { Some(*part) } else { None });
+    let whole = spared.is_some() || clause.phrases().iter().any(|p| matches!(p.sense, Sense::All | Sense::Whole));
+    let owners = match (role.instead, role.was) {
+        (true, Some(was)) => parts::owners_of(was, draft),
+        _ => parts::owners(clause, draft)?,
+    };
+    let Some(object) = owners.first().map(|o| o.object) else { return Ok(()) };
     let later = !moves(clause) && only.is_none();
-    let when = if later { When::take(clause, draft, objects[0])? } else { When::Start };
-    for object in objects {
+    let when = if later { When::take(clause, draft, object)? } else { When::Start };
+    if when == When::Start && !moves(clause) && says_otherwise(name, stuff.as_ref(), clause, draft) {
+        return Ok(());
+    }
+    if let Some(part) = spared {
+        spare(part, when, &owners, draft)?;
+    }
+    for owner in owners {
         // "The elastic vase jumps" says what it is.
-        if name == "elastic" && part.is_none() && when == When::Start && draft.material(object).kind() == "elastic" {
-            let line = format!("{} is elastic", draft.name(object));
+        if name == "elastic" && owner.part.is_none() && when == When::Start && draft.material(owner.object).kind() == "elastic" {
+            let line = format!("{} is elastic", draft.name(owner.object));
             draft.gloss.push(line);
             continue;
         }
-        let owner = parts::owner(draft, object, part);
+        if let Some(before) = role.was.filter(|_| when != When::Start && !role.instead) {
+            let stuff = presets::material(before).map(|preset| preset.material.clone()).or_else(|| Material::of_kind(before)).unwrap_or_default();
+            if *draft.stuff(&owner) != stuff {
+                become_stuff(draft, &owner, When::Start, before, stuff, "");
+            }
+        }
         match (only, &stuff) {
             (Some(scale), Some(preset)) if name != "elastic" => resemble(draft, &owner, name, preset, scale, times)?,
             _ => become_stuff(draft, &owner, when, name, stuff.clone().unwrap_or_default(), by_particles),
         }
+        if owner.part.is_none() && owner.event.is_none() && when == When::Start && only.is_none() {
+            let spared = spared.map(|part| parts::owner(draft, owner.object, Some(part))).and_then(|o| o.part);
+            parts_of_their_own(whole, spared, &owner, draft);
+        }
     }
     Ok(())
+}
+
+/// "Everything except the top": that part is of its own, of what it is of already.
+fn spare(part: super::super::sense::Part, when: When, owners: &[Owner], draft: &mut Draft) -> Result<(), Refusal> {
+    if when != When::Start {
+        return Err("what is left out is so from the start: \"the lower two thirds\" by name have a time, \"the lower half melts at 1 s\"".to_owned());
+    }
+    for owner in owners {
+        let spared = parts::owner(draft, owner.object, Some(part));
+        let kind = draft.stuff(&spared).kind();
+        draft.gloss.push(format!("{} stays {kind}", spared.said));
+    }
+    Ok(())
+}
+
+/// Parts that have stuff of their own: of the new one too where all of it was said, else they keep theirs, and it is said.
+fn parts_of_their_own(whole: bool, spared: Option<usize>, owner: &Owner, draft: &mut Draft) {
+    let thing = &mut draft.spec.objects[owner.object];
+    let stuff = thing.material.clone();
+    let mut kept = Vec::new();
+    let mut changed = Vec::new();
+    for (_, part) in thing.parts.iter_mut().enumerate().filter(|(index, part)| Some(*index) != spared && part.material != stuff) {
+        if whole {
+            part.material = stuff.clone();
+            changed.push(part.name.clone());
+        } else {
+            kept.push(format!("{} stays {}", part.name, part.material.kind()));
+        }
+    }
+    if !changed.is_empty() {
+        draft.gloss.push(format!("{} too", say::list(&changed)));
+    }
+    if !kept.is_empty() {
+        draft.gloss.push(format!("{}: \"make all of it …\" changes that too", say::list(&kept)));
+    }
+}
+
+/// "No, to water" after a turn that made an event: that event brings it. Whether it was so.
+fn says_otherwise(name: &str, stuff: Option<&Material>, clause: &Clause, draft: &mut Draft) -> bool {
+    let to = clause.phrases().iter().any(|p| matches!(p.sense, Sense::Preposition(Preposition::To | Preposition::Into) | Sense::Instead));
+    let verb = clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(_)));
+    if verb || !(draft.corrects || to) {
+        return false;
+    }
+    let Some(before) = draft.context.previous_spec else { return false };
+    let newer = |e: &Event| e.material.is_some() && !before.events.contains(e);
+    let Some(event) = draft.spec.events.iter_mut().rev().find(|e| newer(e)) else { return false };
+    let stuff = stuff.cloned().unwrap_or_default();
+    let line = format!("{} turns {} into {name}: {}", event.name, event.object, say::material(&stuff));
+    event.material = Some(stuff);
+    draft.gloss.push(line);
+    true
 }
 
 /// Reads "as particles", "on the grid": how a liquid is solved. What was said, in words.

@@ -29,6 +29,7 @@ impl When {
         });
         match moment {
             None => Ok(clause.take_at().map_or(When::Start, |at_s| When::At(say::tidy(at_s)))),
+            Some(Moment::LaterLanding | Moment::AfterLanding | Moment::OnTheWay) => Err(no_occasion(moment.unwrap_or(Moment::OnTheWay)).to_owned()),
             Some(Moment::Apex) => flight_s(draft, object).map(|(apex, _)| When::At(apex)).ok_or(NO_FLIGHT.to_owned()),
             Some(Moment::Landing) if moves(draft) => Ok(When::Impact),
             Some(Moment::Landing) => {
@@ -71,6 +72,17 @@ impl When {
             When::At(at_s) => format!(" at {}", say::seconds(at_s)),
             When::Impact => " when it meets something".to_owned(),
         }
+    }
+}
+
+/// Why a moment is none that an event can wait for.
+pub fn no_occasion(moment: Moment) -> &'static str {
+    match moment {
+        Moment::LaterLanding => {
+            "an event waits for the first time that a thing meets something: \"at the first bounce\"; for a later one give a time, \"at 1.2 s\""
+        }
+        Moment::AfterLanding => "an event comes at the impact itself, \"when it lands\", or at a time from the start, \"at 1.2 s\"",
+        _ => "half way is no moment that an event waits for: \"at the top of its jump\", \"when it lands\", \"at 0.5 s\" are",
     }
 }
 

@@ -106,7 +106,7 @@ pub fn set_all_friction(draft: &mut Draft, friction: f64) {
 /// How long it runs.
 pub fn set_duration(draft: &mut Draft, seconds: f64) -> Result<(), Refusal> {
     if !(seconds > 0.0 && seconds <= 600.0) {
-        return Err("it can last up to 600 s".to_owned());
+        return Err("how long it runs is more than 0 s and up to 600 s: \"for 3 seconds\"".to_owned());
     }
     draft.spec.time.duration_s = Auto::Value(say::tidy(seconds));
     draft.gloss.push(format!("it lasts {}", say::seconds(seconds)));
