@@ -4,7 +4,7 @@
 
 use phystalk::gpu::DeviceRequest;
 use phystalk::scene::{self, Gaussians};
-use phystalk::spec::{Auto, Event, Material, Part, Region, Spec, presets};
+use phystalk::spec::{Auto, BoxShape, Collider, ColliderShape, Event, Material, Part, Pin, Region, Spec, SphereShape, Until, presets};
 use phystalk::stages::{Engine, ObjectMetrics, Report, RunOptions};
 use phystalk::store::Store;
 use phystalk::{Frame, Progress, Sink, Stop};
@@ -98,6 +98,34 @@ fn parts_of_one_body_are_of_their_own_stuff() {
     assert!((heavier - (0.6 + 0.4 * 1600.0 / 930.0)).abs() < 0.08, "{heavier} times as heavy");
     let ((stood, _), (sank, wider)) = (fate(&whole.metrics.objects["column"]), fate(&parted.metrics.objects["column"]));
     assert!(stood.abs() < 0.01 && sank > 0.015 && wider > 1.02, "stood {stood}, sank {sank}, {wider} times as wide");
+}
+
+#[test]
+fn what_is_asked_for_in_vain_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut spec = spec(folder.path());
+    spec.time.duration_s = Auto::Value(0.12);
+    spec.objects[0].material = preset("rubber");
+    let far = SphereShape { centre_m: [9.0, 0.0, 0.0], radius_m: 0.1 };
+    spec.objects[0].parts.push(Part { name: "nowhere".to_owned(), region: Region::Sphere(far), material: preset("sand") });
+    let pin = |name: &str, region, from_s| Pin { name: name.to_owned(), object: "column".to_owned(), region, from_s, to_s: Until::End, path: vec![] };
+    spec.pins = vec![pin("air", Region::Sphere(far), 0.0), pin("late", Region::Above(0.5), 5.0)];
+    spec.events.push(Event { push_m_s: Some([1.0, 0.0, 0.0]), ..Event::at("shove", "column", 0.11) });
+    spec.events.push(Event { freeze: true, part: Some("nowhere".to_owned()), ..Event::at("chill", "column", 0.0) });
+    let half = ColliderShape::Box(BoxShape { centre_m: [0.0, 0.0, 0.06], size_m: [1.0, 1.0, 0.12] });
+    spec.colliders.push(Collider { name: "slab".to_owned(), shape: half, friction: 0.5, restitution: 0.0 });
+    let warnings = run(&spec, folder.path()).warnings;
+    let wanted = [
+        "the last one is at 0.100 s",
+        "event shove: begins at 0.11 s",
+        "pin late",
+        "pin air: its region holds nothing",
+        "event chill: part nowhere",
+        "inside collider slab",
+    ];
+    for words in wanted {
+        assert!(warnings.iter().any(|w| w.contains(words)), "{words}: {warnings:#?}");
+    }
 }
 
 #[test]

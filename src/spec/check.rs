@@ -18,6 +18,24 @@ pub(super) fn spec(value: &Value) -> Result<(), SpecError> {
     Walk { root: super::schema::spec() }.check(super::schema::spec(), value, &Place::default())
 }
 
+/// Writes numbers without a fraction as whole ones, for those who wrote `50.0` where a count is asked for. Any number may be
+/// written so.
+pub(super) fn whole_numbers(value: &mut Value) {
+    match value {
+        Value::Number(number) => {
+            // Beyond 2^53 not every whole number is one of these.
+            if let Some(whole) =
+                number.as_f64().filter(|f| number.is_f64() && f.fract() == 0.0 && f.abs() < 9e15 && !(*f == 0.0 && f.is_sign_negative()))
+            {
+                *number = (whole as i64).into();
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(whole_numbers),
+        Value::Object(table) => table.values_mut().for_each(whole_numbers),
+        _ => {}
+    }
+}
+
 /// What a part of the schema allows, in words.
 pub(super) fn describe(schema: &Value) -> String {
     Walk { root: super::schema::spec() }.describe(schema)

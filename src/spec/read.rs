@@ -66,6 +66,7 @@ impl Spec {
     pub(super) fn from_value_noted(mut value: Value, notes: &mut Vec<String>) -> Result<Spec, SpecError> {
         spelling::settle(&mut value, notes)?;
         check::spec(&value)?;
+        check::whole_numbers(&mut value);
         let spec: Spec = serde_json::from_value(value).map_err(|error| SpecError::new(SpecErrorKind::Type, "", error.to_string()))?;
         validate::spec(&spec)?;
         Ok(spec)
@@ -100,7 +101,8 @@ fn read_text(file: &Path) -> Result<String, SpecError> {
         Err(error) => return Err(fault(format!("{shown} cannot be read: {error}"))),
     };
     if size > limits::TEXT_BYTES {
-        return Err(fault(format!("{shown} has {size} bytes, too many for a spec")));
+        let error = SpecError::new(SpecErrorKind::Range, "", format!("{shown} has {size} bytes, too many for a spec"));
+        return Err(error.allowed(format!("at most {} bytes", limits::TEXT_BYTES)));
     }
     let bytes = std::fs::read(file).map_err(|error| fault(format!("{shown} cannot be read: {error}")))?;
     String::from_utf8(bytes).map_err(|_| SpecError::new(SpecErrorKind::Syntax, "", format!("{shown} is not UTF-8 text")))

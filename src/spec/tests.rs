@@ -205,6 +205,14 @@ fn what_comes_later_is_refused_by_name() {
 }
 
 #[test]
+fn a_count_may_be_written_with_a_point() {
+    let spec = |fps: &str| Spec::from_toml(&format!("format = 1.0\n[scene]\nfile = \"a.splat\"\n[time]\nfps = {fps}\n[[object]]\nname = \"a\"\n"));
+    assert_eq!(spec("25.0").unwrap().time.fps, 25);
+    let fault = spec("25.5").unwrap_err();
+    assert!(fault.to_string().contains("time.fps"), "{fault}");
+}
+
+#[test]
 fn forces_act_in_one_way_that_is_checked() {
     let force = |text: &str| with("acceleration_m_s2 = [6, 0, 0]", text).map(|spec| spec.forces[0].clone());
     let written = force("acceleration_m_s2 = \" vec3( 6.0*sin((3.0*t)),0, 0 ) \"").unwrap();

@@ -270,7 +270,8 @@ fn heading(place: &str, vector: &[f64; 3], what: &str) -> Result<(), SpecError> 
     if (1e-6..1e6).contains(&length) {
         Ok(())
     } else {
-        Err(SpecError::new(SpecErrorKind::Range, place, format!("{what} of length {} has no direction", number(length)))
+        let fault = if length < 1.0 { "has no direction" } else { "is too long for one" };
+        Err(SpecError::new(SpecErrorKind::Range, place, format!("{what} of length {} {fault}", number(length)))
             .allowed("a direction such as [0, 0, 1]"))
     }
 }

@@ -6,8 +6,8 @@ use super::{Action, EngineError, Metrics, Plan, RunOptions, StageName, pack, sum
 use crate::gpu::Gpu;
 use crate::spec::{Auto, Spec};
 use crate::store::Store;
-use crate::world::Figure;
 use crate::world::bodies::{Matter, matter};
+use crate::world::{Figure, asked_in_vain};
 use crate::{Frame, Sink, Stop, render, skin, solver};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -51,6 +51,7 @@ pub(super) fn run(
     tracing::debug!("solid and bound");
     let matter = matter(spec, &ready.prepared.value, &solids.value);
     let mut warnings = warnings(&ready, &solids.value, &matter);
+    warnings.extend(asked_in_vain(spec, &matter, &ready.resolved));
     let motion = Motion::new(engine, spec, &ready, &matter)?;
     if !motion.keep_motion {
         warnings.push("the motion would take more than half of the store, so checkpoints alone are kept: a new camera simulates again".to_owned());
@@ -90,7 +91,7 @@ pub(super) fn run(
     let of_forces = summary::of_forces(&done.totals);
     of_forces.iter().for_each(|w| sink.warning(w));
     warnings.extend(of_forces);
-    summary::of_impacts(spec, &done.totals, done.stopped).iter().for_each(|n| sink.note(n));
+    summary::of_impacts(spec, &done.totals, ready.resolved.cell_m, done.stopped).iter().for_each(|n| sink.note(n));
     // Whoever gave a stiffness hears what it was simulated with.
     done.totals.softened.iter().for_each(|text| sink.warning(text));
     warnings.extend(done.totals.softened.iter().cloned());
@@ -98,6 +99,9 @@ pub(super) fn run(
     let seconds = seconds.iter().map(|(stage, s)| (stage.as_str().to_owned(), *s)).chain(parts).collect();
     let metrics = summary::metrics(spec, &ready, &matter, &done.rows, &done.totals, seconds, engine.device()?);
     let metrics = Metrics { memory: done.memory, ..metrics };
+    let crushed = summary::of_crushed(spec, &metrics);
+    crushed.iter().for_each(|w| sink.warning(w));
+    warnings.extend(crushed);
     Ok(Report { plan, metrics, camera: ready.resolved.camera, stopped: done.stopped, warnings })
 }
 

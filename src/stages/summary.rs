@@ -7,11 +7,14 @@ use crate::gpu::Gpu;
 use crate::render::View;
 use crate::solver::{Advance, Taut};
 use crate::spec::expect::Condition;
-use crate::spec::{Event, Spec, limits};
+use crate::spec::{Event, Object, Spec, limits};
 use crate::world::ObjectFacts;
 use crate::world::bodies::Matter;
 use crate::world::measure::Row;
 use std::collections::BTreeMap;
+
+/// A solid is crushed under this share of its volume.
+const CRUSHED: f64 = 0.25;
 
 /// Sums of one advance.
 pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
@@ -59,14 +62,35 @@ pub(super) fn of_forces(totals: &SolverTotals) -> Vec<String> {
 }
 
 /// When what waited for an impact came about, in words.
-pub(super) fn of_impacts(spec: &Spec, totals: &SolverTotals, stopped: bool) -> Vec<String> {
+pub(super) fn of_impacts(spec: &Spec, totals: &SolverTotals, cell_m: f64, stopped: bool) -> Vec<String> {
     let told = |event: &EventMetrics, waits: bool| match event.at_s {
         Some(at_s) if waits => Some(format!("{}: {} met something at {at_s:.3} s", event.name, event.object)),
-        None if waits && !stopped => Some(format!("{}: {} met nothing that it did not touch before, so it did not happen", event.name, event.object)),
+        None if waits && !stopped => Some(format!(
+            "{}: {} met nothing that it had been clear of by half a cell ({:.1} cm), so it did not happen",
+            event.name,
+            event.object,
+            50.0 * cell_m
+        )),
         _ => None,
     };
     let events = events(spec, totals, f64::INFINITY);
     events.iter().zip(&spec.events).filter_map(|(event, asked)| told(event, asked.when.is_some())).collect()
+}
+
+/// Solids that ended as little of their volume, which nothing of that kind does.
+pub(super) fn of_crushed(spec: &Spec, metrics: &Metrics) -> Vec<String> {
+    let solid = |o: &&Object| o.material.stands() && !spec.events.iter().any(|e| e.object == o.name && e.material.is_some());
+    let left = |o: &Object| metrics.objects.get(&o.name)?.volume_ratio.last().copied();
+    let crushed = spec.objects.iter().filter(solid).filter_map(|o| Some((o, left(o)?))).filter(|(_, ratio)| *ratio < CRUSHED);
+    crushed
+        .map(|(o, ratio)| {
+            format!(
+                "{}: was crushed to {:.0} % of its volume and stays so: it is too soft for what hits it, use a higher material.young_pa",
+                o.name,
+                100.0 * ratio.max(0.0)
+            )
+        })
+        .collect()
 }
 
 /// When each event of the spec happened.

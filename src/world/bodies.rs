@@ -7,7 +7,7 @@ use super::prepared::NEAR_M;
 use super::region::{self, bounds};
 use super::stuff::{Stuff, Yardstick};
 use crate::proxy::{self, Solid, YoungAuto};
-use crate::solver::{Particles, Substance};
+use crate::solver::Particles;
 use crate::spec::{Auto, Material, Object, Rest, Spec};
 use glam::Vec3;
 
@@ -129,10 +129,6 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
         if let Some(material) = &event.material {
             matter.changes[number] = Some(resolve(matter, &yard, material, &format!("event.{}", event.name)));
         }
-    }
-    let beside = stuffs.iter().any(|stuff| matches!(stuff.substance, Substance::SphLiquid { .. }));
-    if beside && spec.pins.iter().any(|pin| pin.object == object.name) {
-        matter.warnings.push(format!("{}: a liquid of smoothed particles is not held by pins", object.name));
     }
     let standing = object.rest == Rest::AsCaptured;
     warn_of_softness(matter, object, &auto, stuffs[0].young_pa);

@@ -18,6 +18,7 @@ mod seam;
 mod settings;
 mod spread;
 mod stuff;
+mod vain;
 
 pub use alive::{Checkpoint, Step, World};
 pub use event::{Effect, TimedEvent};
@@ -26,3 +27,4 @@ pub use figure::Figure;
 pub use prepared::{Prepared, support_below};
 pub use resolve::{CELLS_ACROSS_DRAFT, CELLS_ACROSS_FULL, Resolved, resolve};
 pub use stuff::Stuff;
+pub use vain::said as asked_in_vain;
