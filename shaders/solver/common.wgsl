@@ -58,6 +58,9 @@ struct Params {
     speed_most: f32,
     // Bits of the layers that hold liquid.
     wet_layers: u32,
+    // What stands inside a surface comes out of it by so much in a substep, m: a jump would take it out of the order of
+    // its cells, or through whatever is beyond.
+    push_m: f32,
     // Layer of each object, four bits each.
     layer_of: array<u32, DEALT / 8u>,
     // Where each block of the window is stored, layer after layer.

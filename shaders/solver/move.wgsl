@@ -42,11 +42,12 @@ fn moved(i: u32, m: Matter, gathered: Gathered, alive: bool) -> Moved {
     let n = params.count;
     let tag = bitcast<u32>(label.y);
     let gradient = gathered.gradient * (4.0 * params.per_m);
-    var x = position.xyz + substep.dt_s * gathered.v;
-    var v = gathered.v + substep.dt_s * objects[tag & 0xffffu].xyz;
+    let along = held_back(gathered.v);
+    var x = position.xyz + substep.dt_s * along;
+    var v = along + substep.dt_s * objects[tag & 0xffffu].xyz;
 
-    // Whatever got behind a surface is put back on it and keeps no inward velocity.
-    // Liquid that stands nearer to one than it rests comes no nearer. The ground has the last word: where
+    // Whatever got behind a surface is put back on it and keeps no inward velocity; what was there before comes out little
+    // by little. Liquid that stands nearer to one than it rests comes no nearer. The ground has the last word: where
     // surfaces leave no room between them nothing passes it.
     let rest_m = min(label.z, 0.0);
     let slips = m.mu == 0.0;
@@ -57,7 +58,7 @@ fn moved(i: u32, m: Matter, gathered: Gathered, alive: bool) -> Moved {
         let nearest_m = select(rest_m, clamp(before_m, 0.0, max(label.z, 0.0)), slips);
         if (t.distance_m < nearest_m) {
             let normal = surface_normal(colliders[c], t.face, x);
-            x += normal * (nearest_m - t.distance_m);
+            x += normal * min(nearest_m - t.distance_m, max(dot(position.xyz - x, normal), 0.0) + params.push_m);
             v -= normal * min(dot(v, normal), 0.0);
         }
     }

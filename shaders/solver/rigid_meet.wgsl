@@ -45,13 +45,15 @@ fn main(@builtin(local_invocation_index) b: u32) {
     let xz = s2.x - moment.x * moment.z / mass;
     let yz = s2.y - moment.y * moment.z / mass;
     let both = own + mat3x3<f32>(vec3<f32>(yy + zz, -xy, -xz), vec3<f32>(-xy, xx + zz, -yz), vec3<f32>(-xz, -yz, xx + yy));
-    let right = l - cross(moment, p) / mass;
-    let determinant = dot(both[0], cross(both[1], both[2]));
+    // In units of its own size: of a grain of a millimetre the cube of an inertia is below all that f32 holds.
+    let unit = 1.0 / (both[0].x + both[1].y + both[2].z);
+    let one = both * unit;
+    let right = (l - cross(moment, p) / mass) * unit;
     let omega = vec3<f32>(
-        dot(right, cross(both[1], both[2])),
-        dot(both[0], cross(right, both[2])),
-        dot(both[0], cross(both[1], right)),
-    ) / determinant;
+        dot(right, cross(one[1], one[2])),
+        dot(one[0], cross(right, one[2])),
+        dot(one[0], cross(one[1], right)),
+    ) / dot(one[0], cross(one[1], one[2]));
     predicted[2u * b] = vec4<f32>((p - cross(omega, moment)) / mass, 0.0);
     predicted[2u * b + 1u] = vec4<f32>(omega, 0.0);
 }

@@ -1,7 +1,7 @@
 // Moves all bodies through one substep, in one workgroup: forces, contacts, positions.
 //
 // Sequential impulses with warm starting: overlaps are pushed out by soft springs, whose energy a second
-// set of rounds takes away again (Catto, "Solver2D", 2024); gaps may close exactly; friction keeps to
+// set of rounds takes away again (Catto, "Solver2D", 2024), and grow no deeper, whatever drives them; gaps may close exactly; friction keeps to
 // Coulomb's cone; restitution comes last, from the speed of approach before any of it. Manifolds of
 // one colour share no body and run side by side.
 
@@ -137,7 +137,10 @@ fn solve(m: u32, biased: bool, spring: vec3<f32>) {
             given_back = spring.z;
         }
         let approach = dot(relative(a, b, c.arm.xyz, c.arm_other.xyz), n);
-        let wanted = impulse.w - c.arm.w * share * (approach + bias) - given_back * impulse.w;
+        var wanted = impulse.w - c.arm.w * share * (approach + bias) - given_back * impulse.w;
+        if (gap_m < 0.0) {
+            wanted = max(wanted, impulse.w - c.arm.w * approach);
+        }
         let normal_now = max(wanted, 0.0);
         push(a, b, c.arm.xyz, c.arm_other.xyz, n * (normal_now - impulse.w));
         impulse.w = normal_now;

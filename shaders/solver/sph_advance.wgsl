@@ -38,8 +38,9 @@ fn braked(x: vec3<f32>, v: vec3<f32>, full: f32) -> vec3<f32> {
     return u;
 }
 
-// Moves what got behind a surface back onto it, behind the ground last; it keeps no inward velocity.
-fn kept_out(x: vec3<f32>, v: vec3<f32>, rest_m: f32) -> array<vec3<f32>, 2> {
+// Moves what got behind a surface on its way back onto it, behind the ground last; it keeps no inward velocity. What was there
+// before comes out little by little.
+fn kept_out(from_x: vec3<f32>, x: vec3<f32>, v: vec3<f32>, rest_m: f32) -> array<vec3<f32>, 2> {
     var outside = x;
     var u = v;
     for (var k = params.collider_count; k > 0u; k--) {
@@ -47,7 +48,7 @@ fn kept_out(x: vec3<f32>, v: vec3<f32>, rest_m: f32) -> array<vec3<f32>, 2> {
         let t = touch(colliders[c], outside);
         if (t.distance_m < rest_m) {
             let normal = surface_normal(colliders[c], t.face, outside);
-            outside += normal * (rest_m - t.distance_m);
+            outside += normal * min(rest_m - t.distance_m, max(dot(from_x - outside, normal), 0.0) + params.push_m);
             u -= normal * min(dot(u, normal), 0.0);
         }
     }
@@ -70,7 +71,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
             // The density of liquid alone: walls hide hidden / (1 + hidden).
             let hidden = density[n + i].w;
             v = braked(position.xyz, v, clamp(density[i].w - hidden / (1.0 + hidden), 0.3, 1.0));
-            let moved = kept_out(position.xyz + substep.dt_s * v, v, min(tag.z, 0.0));
+            let moved = kept_out(position.xyz, position.xyz + substep.dt_s * v, v, min(tag.z, 0.0));
             v = moved[1];
             kinematics[i] = vec4<f32>(moved[0], position.w);
             kinematics[n + i] = vec4<f32>(v, kinematics[n + i].w);

@@ -1,6 +1,7 @@
 //! Going on in time: segments of whole substeps, watched, rolled back and run again.
 
 use super::budget;
+use super::constants::PUSH_SHARE;
 use super::core::Solver;
 use super::fields::Fields;
 use super::grid::GridBuffers;
@@ -155,7 +156,8 @@ impl Solver {
                 }
                 continue;
             }
-            tracing::debug!(time_s = self.time_s, until_s, dt_s = plan.dt_s, substeps = plan.substeps, speed_m_s, wary = ?self.wary, "segment");
+            let j = (seen.j_low, seen.j_high);
+            tracing::debug!(time_s = self.time_s, until_s, dt_s = plan.dt_s, substeps = plan.substeps, speed_m_s, ?j, wary = ?self.wary, "segment");
             let (start, order) = (self.substep, self.current);
             let outcome = self.run(&plan, stop, tries.trips > 0)?;
             let Outcome::Done(now) = outcome else {
@@ -182,7 +184,7 @@ impl Solver {
                 self.report(&plan, &now, report);
                 return Ok(());
             };
-            tracing::debug!(time_s = self.time_s, dt_s = plan.dt_s, reason, "rolled back");
+            tracing::debug!(time_s = self.time_s, dt_s = plan.dt_s, reason, before = ?seen, ?now, "rolled back");
             self.roll_back(start, order);
             report.retries += 1;
             // How wide the window happens to be is no part of the state: leaving it asks for room and teaches nothing, so
@@ -363,6 +365,7 @@ impl Solver {
     /// `watched`: ends as soon as something went wrong, at the cost of a read-back a batch.
     fn run(&mut self, plan: &Plan, stop: &Stop, watched: bool) -> Result<Outcome, SolverError> {
         self.set_activations(plan)?;
+        self.params.push_m = PUSH_SHARE * self.params.slack as f32 * self.settings.cell_m / plan.sort_every.max(1) as f32;
         let bound = self.bind_both()?;
         self.start_segment();
         let (mut batch, longest) = match self.gpu.tier {

@@ -51,6 +51,8 @@ pub const FIXED_BITS_RETREAT: u32 = 2;
 pub const SLACK_CELLS: i32 = 1;
 /// Where workgroups go by block: within half of it particles stay in the tile.
 pub const BLOCK_SLACK_CELLS: i32 = 2;
+/// Share of that by which a surface may push out what stands inside it: speeds take up to half.
+pub const PUSH_SHARE: f32 = 0.25;
 /// A node whose nearest particle is within this of its rest offset stands on its support, in cells. No
 /// more than the rounding of marks: what is a hair above it would fall by that hair.
 pub const TOUCHING_CELLS: f32 = 1e-4;

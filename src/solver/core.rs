@@ -1,7 +1,7 @@
 //! The solver itself: its particles, its surroundings, and what may be done to them between frames.
 
 use super::budget;
-use super::constants::{BLOCK_SLACK_CELLS, DEALT, FEW_PARTICLES, FIXED_BITS, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP};
+use super::constants::{BLOCK_SLACK_CELLS, DEALT, FEW_PARTICLES, FIXED_BITS, PUSH_SHARE, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP};
 use super::encounter::{Encounter, Layers};
 use super::fields::Fields;
 use super::grid::{GROUPS_MOST, GridBuffers, Window, params_buffer};
@@ -56,6 +56,7 @@ pub(super) struct Params {
     pub rounder: f32,
     pub speed_most: f32,
     pub wet_layers: u32,
+    pub push_m: f32,
     pub layer_of: [u32; DEALT as usize / 8],
 }
 
@@ -159,6 +160,7 @@ impl Solver {
             momentum_floor: heaviest_kg * 1e-3,
             ..Default::default()
         };
+        params.push_m = PUSH_SHARE * params.slack as f32 * settings.cell_m;
         let layers = Layers::deal(&settings, &states, &particles.substances);
         layers.note(&mut params);
         let rigid = rigid::assemble(&states, &particles.substances, &colliders, settings.cell_m)?.map(|all| Rigid::new(gpu, &all)).transpose()?;

@@ -304,7 +304,11 @@ impl Solve<'_> {
             (bias, share, back) = ((omega / one * gap_m).max(-RIGID_PUSH_RATE * shape.radius_m), two * three, three);
         }
         let approach = self.relative(m, &c).dot(n);
-        let normal = (c.impulse[3] - c.arm[3] * share * (approach + bias) - back * c.impulse[3]).max(0.0);
+        let mut wanted = c.impulse[3] - c.arm[3] * share * (approach + bias) - back * c.impulse[3];
+        if gap_m < 0.0 {
+            wanted = wanted.max(c.impulse[3] - c.arm[3] * approach);
+        }
+        let normal = wanted.max(0.0);
         self.push(m, &c, n * (normal - c.impulse[3]));
         let v = self.relative(m, &c);
         let along = (xyz(&c.impulse) - (v - n * v.dot(n)) * c.grip[0]).clamp_length_max(self.manifolds[m].friction * normal);

@@ -45,6 +45,25 @@ fn what_is_placed_inside_a_collider_starts_in_front_of_it_in_one_piece() {
 }
 
 #[test]
+fn what_starts_deep_in_surfaces_comes_out_little_by_little() {
+    // A wall that leaves no room for a hundred metres, and the ground: whichever had the last word would throw the block
+    // out of its cells.
+    let particles = block(Vec3::new(0.0, 0.0, -0.1), Vec3::new(0.2, 0.2, 0.2), 0.025, 2e5, 0.3);
+    let wall = ColliderShape::Plane(PlaneShape { point_m: [100.0, 0.0, 0.0], normal: [1.0, 0.0, -1.0] });
+    let colliders = vec![Collider { shape: wall, friction: 0.3, restitution: 0.0 }];
+    let mut solver = solver(Settings { colliders, ..on_ground(0.3, 0.0) }, &particles);
+    let report = solver.advance(0.02, &Stop::default()).expect("an advance");
+    assert_eq!((report.retries, report.softened.len()), (0, 0), "{report:?}");
+    let most_m = super::super::constants::PUSH_SHARE * solver.params.slack as f32 * CELL_M * report.substeps as f32;
+    for (s, p) in solver.states().expect("states").iter().zip(&particles.position_m) {
+        let way = s.position_m - *p;
+        // It may stay half a cell inside: so far a captured thing may stand in its support.
+        assert!(s.position_m.z > p.z.min(-0.5 * CELL_M) - 1e-3 && way.x > 0.0 && way.length() < 2.0 * most_m, "from {p} by {way}, at most {most_m}");
+        assert!(s.velocity_m_s.length() < 1.0, "at {}", s.velocity_m_s);
+    }
+}
+
+#[test]
 fn friction_slows_a_sliding_block_by_mu_g() {
     let particles = block(Vec3::new(0.0, 0.0, -0.005), Vec3::new(0.3, 0.3, 0.1), 0.025, 2e5, 0.3);
     let mut solver = solver(on_ground(0.3, 0.0), &particles);

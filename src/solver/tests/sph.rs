@@ -241,7 +241,7 @@ fn one_substep_pass_by_pass() {
             let behind = f64::from(s.rest_m.min(0.0) - touch.distance_m);
             if behind > 0.0 {
                 let normal = c.normal(touch.face, x.as_vec3()).as_dvec3();
-                x += normal * behind;
+                x += normal * behind.min((me.x - x).dot(normal).max(0.0) + f64::from(around.params.push_m));
                 v -= normal * v.dot(normal).min(0.0);
             }
         }

@@ -225,19 +225,21 @@ pub fn g2p(states: &mut [ParticleState], grid: &Grid, around: &Surroundings, dt_
     let params = &around.params;
     for s in states.iter_mut().filter(|s| !s.is_rigid()) {
         let (v, gradient) = gather(grid, s.position_m, params);
-        let mut x = s.position_m + v.as_vec3() * dt_s;
-        let mut v = v.as_vec3() + around.accelerations[s.object() as usize] * dt_s;
+        let held_back = |v: Vec3| v * (params.speed_most / v.length().max(1e-30)).min(1.0);
+        let along = held_back(v.as_vec3());
+        let mut x = s.position_m + along * dt_s;
+        let mut v = along + around.accelerations[s.object() as usize] * dt_s;
         for collider in around.colliders.iter().rev() {
             let touch = collider.touch(x);
             let slipping_m = collider.touch(s.position_m).distance_m.clamp(0.0, s.rest_m.max(0.0));
             let behind_m = if s.mu_pa == 0.0 { slipping_m } else { s.rest_m.min(0.0) } - touch.distance_m;
             if behind_m > 0.0 {
                 let normal = collider.normal(touch.face, x);
-                x += normal * behind_m;
+                x += normal * behind_m.min((s.position_m - x).dot(normal).max(0.0) + params.push_m);
                 v -= normal * v.dot(normal).min(0.0);
             }
         }
-        v *= (params.speed_most / v.length().max(1e-30)).min(1.0);
+        v = held_back(v);
         let trial = (DMat3::IDENTITY + gradient * f64::from(dt_s)) * s.f().as_dmat3();
         let size = trial.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
         let f = trial * (f64::from(F_MOST) / size).min(1.0);

@@ -22,6 +22,12 @@ pub(super) fn make(value: &mut Value, scene_file: &str, seed: u64, size: Size, r
     let scale = [1e-3, 1.0, 1.0, 1.0, 100.0][random.below(5)];
     spec.insert("scene".to_owned(), json!({ "file": scene_file, "up": "+z", "metres_per_unit": scale }));
     let end_s = run(spec, size, random);
+    if let Some(height) = spec.get_mut("world").and_then(|world| world.pointer_mut("/ground/height_m")).filter(|height| height.is_number()) {
+        // What lies under the ground altogether is refused.
+        if random.chance(NEAR) {
+            *height = json!((0.8 * random.share() - 0.4) * scale);
+        }
+    }
     for key in ["camera", "output", "skin", "expect", "look"] {
         spec.remove(key);
     }
@@ -74,6 +80,8 @@ fn object(item: &mut Table, scale: f64, random: &mut Random) {
         // A particle, or a few.
         let ids: Vec<usize> = (0..1 + random.below(3)).map(|_| random.below(960)).collect();
         item.insert("select".to_owned(), json!({ "ids": ids }));
+        // So few lie in a plane, and have no hull.
+        item.insert("proxy".to_owned(), json!("voxel"));
     }
     if random.chance(NEAR) {
         item.insert("offset_m".to_owned(), json!(std::array::from_fn::<f64, 3, _>(|_| (random.share() - 0.4) * scale)));
@@ -174,7 +182,8 @@ fn split_scene(spec: &mut Table, scale: f64, random: &mut Random) {
     if count < 2 {
         return;
     }
-    let at = if random.chance(0.2) { -0.2 } else { 0.0 };
+    // Two layers of Gaussians at least, which have a hull.
+    let at = if random.chance(0.2) { -0.15 } else { 0.0 };
     for (number, item) in entries(spec, "object").enumerate().filter(|(_, item)| item.get("select") == Some(&json!("all"))) {
         let x = (at + if number == 0 { -1.0 } else { 1.0 }) * scale;
         let size = [2.0 * scale, 4.0 * scale, 4.0 * scale];

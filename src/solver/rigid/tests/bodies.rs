@@ -93,6 +93,24 @@ fn a_ball_rests_in_a_bowl() {
 }
 
 #[test]
+fn what_starts_in_the_ground_is_driven_no_deeper() {
+    // A grain of a millimetre under a hundred times its weight: a spring that is as soft as it may be for large bodies, and
+    // pushes no faster than it may, would let it through.
+    let scale = 1e-3;
+    let size = scale * Vec3::new(0.2, 0.2, 0.3);
+    let particles = rigid(block(Vec3::new(0.0, 0.0, -0.1 * scale), size, 0.025 * scale, 1e5, 0.3), 0.3, 0.0);
+    let settings = Settings { gravity_m_s2: Vec3::new(0.0, 0.0, -1000.0), cell_m: CELL_M * scale, ..incline(0.0, 0.3) };
+    let mut solver = solver(settings, &particles);
+    let start_m = centre(&bodies_of(&solver)[0]).z;
+    for frame in 1..=5 {
+        advance(&mut solver, 0.002 * f64::from(frame));
+        let z_m = centre(&bodies_of(&solver)[0]).z;
+        assert!(z_m > start_m - 0.01 * scale, "sank by {} m", start_m - z_m);
+    }
+    assert!(velocity(&bodies_of(&solver)[0]).length() < 0.01);
+}
+
+#[test]
 fn a_fast_body_does_not_pass_a_thin_wall() {
     let particles = rigid(block(Vec3::new(0.0, 0.0, 0.0), Vec3::splat(0.1), 0.025, 1e5, 0.3), 0.3, 0.0);
     let wall = BoxShape { centre_m: [0.6, 0.0, 0.0], size_m: [0.02, 2.0, 2.0] };
