@@ -63,6 +63,8 @@ fn scaled(key: &str, before: &Value, after: &Value) -> Option<String> {
     let scale = SCALES.iter().find(|scale| scale.key == key)?;
     let (zero_before, zero_after) = (size(before) == Some(0.0), size(after) == Some(0.0));
     match ratio(before, after) {
+        // "Not strong a skin at all" is no English.
+        _ if zero_after && scale.as_much.contains(' ') => Some("none at all".to_owned()),
         _ if zero_after => Some(format!("not {} at all", scale.as_much)),
         _ if zero_before => None,
         Some(ratio) if ratio < 0.0 => Some(match compared(-ratio, scale) {

@@ -2,7 +2,7 @@
 //! stuff that is there already, and verbs that nobody knows.
 
 use super::phrases::{Phrase, Reading};
-use super::sense::{Moment, Preposition, Sense, Verb};
+use super::sense::{Moment, Preposition, Sense, TurnWord, Verb};
 use super::tokens::Token;
 use phystalk::spec::{Auto, Material, Spec, presets};
 
@@ -10,11 +10,18 @@ use phystalk::spec::{Auto, Material, Spec, presets};
 pub fn understand(reading: &mut Reading, spec: &Spec) {
     hear_exceptions(reading);
     count_on(&mut reading.phrases, &reading.tokens);
+    hear_contrast(&mut reading.phrases);
+    hear_undone(&mut reading.phrases, &reading.tokens);
     let mut stretches: Vec<&mut [Phrase]> = reading.phrases.split_mut(|p| p.sense == Sense::Separator).collect();
+    hear_sides(&mut stretches);
     let count = stretches.len();
     for (i, stretch) in stretches.iter_mut().enumerate() {
         hear_endings(stretch);
         hear_onset(stretch, &reading.tokens);
+        hear_instead(stretch);
+        hear_watching(stretch, &reading.tokens);
+        hear_rock(stretch, &reading.tokens);
+        hear_shares(stretch, &reading.tokens);
         hear_wait(stretch, i + 1 < count);
     }
     know_stuff(&mut reading.phrases, &reading.tokens, spec);
@@ -83,6 +90,123 @@ fn hear_endings(stretch: &mut [Phrase]) {
     {
         time.sense = Sense::Until(at_s);
         stretch[ends].sense = Sense::Filler;
+    }
+}
+
+/// "Wind from the left, then from the right": whether the camera or another wind is meant nobody can know.
+fn hear_sides(stretches: &mut [&mut [Phrase]]) {
+    let mut blown = false;
+    for stretch in stretches.iter_mut().filter(|s| !s.is_empty()) {
+        let side = |p: &Phrase| matches!(p.sense, Sense::View(view) if super::directions::from_side(view).is_some());
+        let acts = |p: &Phrase| super::clause::asks(&p.sense) && !side(p);
+        let bare = !stretch.iter().any(acts);
+        if let Some(phrase) = stretch.iter_mut().find(|p| bare && blown && side(p)) {
+            phrase.sense = Sense::Limit;
+        }
+        let seen = stretch.iter().any(|p| matches!(p.sense, Sense::Camera | Sense::Verb(Verb::Look)));
+        blown = !seen && stretch.iter().any(|p| matches!(p.sense, Sense::Verb(Verb::Blow | Verb::Push(_) | Verb::Pull))) && stretch.iter().any(side);
+    }
+}
+
+/// "Rubber instead of steel", "left rather than right": what comes after is what is not wanted.
+fn hear_instead(stretch: &mut [Phrase]) {
+    let Some(at) = stretch.iter().position(|p| p.sense == Sense::Instead && p.span.len() == 2) else { return };
+    let unwanted =
+        |s: &Sense| matches!(s, Sense::Material(_) | Sense::Direction(_) | Sense::Verb(_) | Sense::Part(_) | Sense::Quality(..) | Sense::It);
+    if let Some(next) = stretch[at + 1..].iter_mut().find(|p| !matches!(p.sense, Sense::Article | Sense::Filler))
+        && unwanted(&next.sense)
+    {
+        next.sense = Sense::Filler;
+    }
+}
+
+/// "Make it steel, not jelly": what is not wanted beside what is.
+fn hear_contrast(phrases: &mut [Phrase]) {
+    let noun = |s: &Sense| matches!(s, Sense::Material(_) | Sense::Direction(_) | Sense::Part(_));
+    let mut start = 0;
+    while start < phrases.len() {
+        let end = (start..phrases.len()).find(|&i| phrases[i].sense == Sense::Separator).unwrap_or(phrases.len());
+        let only = |p: &Phrase| matches!(p.sense, Sense::Negation | Sense::Article | Sense::Preposition(_)) || noun(&p.sense);
+        let denied = phrases[start..end].first().is_some_and(|p| p.sense == Sense::Negation) && phrases[start..end].iter().all(only);
+        let unwanted = phrases[start..end].iter().find(|p| noun(&p.sense)).map(|p| std::mem::discriminant(&p.sense));
+        if denied && unwanted.is_some() && phrases[..start].iter().any(|p| Some(std::mem::discriminant(&p.sense)) == unwanted) {
+            phrases[start..end].iter_mut().for_each(|p| p.sense = Sense::Filler);
+        }
+        let named = |from: usize, to: usize| phrases[from..to].iter().any(|p| matches!(p.sense, Sense::Material(_)));
+        let bare = |p: &Phrase| matches!(p.sense, Sense::Material(_) | Sense::Article | Sense::Filler | Sense::Preposition(_));
+        // "Rubber and jelly" is neither.
+        let before = phrases[..start].iter().rposition(|p| p.sense != Sense::Separator).map_or(0, |i| i + 1);
+        let begin = phrases[..before].iter().rposition(|p| p.sense == Sense::Separator).map_or(0, |i| i + 1);
+        let parts = phrases[begin..before].iter().any(|p| matches!(p.sense, Sense::Part(_) | Sense::Negation));
+        let same = phrases[start..end].iter().all(bare) && named(start, end) && named(begin, before) && !parts;
+        if let Some(second) = phrases[start..end].iter_mut().find(|p| same && matches!(p.sense, Sense::Material(_))) {
+            second.sense = Sense::Limit;
+        }
+        start = end + 1;
+    }
+}
+
+/// "Undo the wind" takes that back, and not the turn before it.
+fn hear_undone(phrases: &mut [Phrase], tokens: &[Token]) {
+    for i in 1..phrases.len() {
+        let named = tokens[phrases[i].span.start].word == "the";
+        if named && phrases[i - 1].sense == Sense::Turn(TurnWord::Undo) && phrases[i - 1].span.len() == 1 {
+            phrases[i - 1].sense = Sense::Verb(Verb::Stop);
+        }
+    }
+}
+
+/// "Watch it shatter", "see it bounce": what it does is asked for, not where it is seen from.
+fn hear_watching(stretch: &mut [Phrase], tokens: &[Token]) {
+    for i in 0..stretch.len() {
+        let watches =
+            stretch[i].sense == Sense::Verb(Verb::Look) && matches!(tokens[stretch[i].span.start].word.as_str(), "see" | "watch" | "watched");
+        let next = stretch[i + 1..]
+            .iter()
+            .map(|p| &p.sense)
+            .find(|s| !matches!(s, Sense::It | Sense::Article | Sense::Objects(_) | Sense::All | Sense::Filler));
+        if watches && matches!(next, Some(Sense::Verb(verb)) if !matches!(verb, Verb::Look | Verb::Zoom(_) | Verb::Orbit)) {
+            stretch[i].sense = Sense::Filler;
+        }
+    }
+}
+
+/// "As hard as rock" is of stone and sways nowhere.
+fn hear_rock(stretch: &mut [Phrase], tokens: &[Token]) {
+    for i in 1..stretch.len() {
+        let before = &stretch[i - 1];
+        let named = matches!(
+            before.sense,
+            Sense::As | Sense::Article | Sense::Material(_) | Sense::Preposition(Preposition::Of | Preposition::Into | Preposition::To)
+        ) || matches!(tokens[before.span.end - 1].word.as_str(), "like" | "than");
+        if named && tokens[stretch[i].span.start].word == "rock" && stretch[i].span.len() == 1 {
+            stretch[i].sense = Sense::Material("stone");
+        }
+    }
+}
+
+/// "The left side of the top", "the vase's neck": parts of parts, and parts that nobody knows, are less than what would be read.
+fn hear_shares(stretch: &mut [Phrase], tokens: &[Token]) {
+    for i in 1..stretch.len() {
+        let before = stretch[..i].iter().rev().map(|p| &p.sense).find(|s| **s != Sense::Article);
+        let of_part = before == Some(&Sense::Preposition(Preposition::Of))
+            && matches!(stretch[i].sense, Sense::Part(_))
+            && stretch[..i]
+                .iter()
+                .rev()
+                .find(|p| !matches!(p.sense, Sense::Article | Sense::Preposition(_)))
+                .is_some_and(|p| matches!(p.sense, Sense::Part(_)));
+        let owner = &stretch[i - 1];
+        let owned = stretch[i].sense == Sense::Unknown
+            && matches!(owner.sense, Sense::Objects(_))
+            && tokens[owner.span.end - 1].text.to_lowercase().ends_with(['s', '’', '\''])
+            && tokens[owner.span.end - 1].text.contains(['\'', '’']);
+        let begins = before == Some(&Sense::Preposition(Preposition::From))
+            && matches!(stretch[i].sense, Sense::Part(_))
+            && stretch.iter().any(|p| matches!(p.sense, Sense::Verb(Verb::Change(_))));
+        if of_part || owned || begins {
+            stretch[i].sense = Sense::Limit;
+        }
     }
 }
 
@@ -160,6 +284,14 @@ pub fn hear_deeds(reading: &mut Reading) {
         let letters = tokens[stretch[first].span.start].word.chars().all(char::is_alphabetic);
         if stretch[first].sense == Sense::Unknown && governs && letters && !adverb {
             stretch[first].sense = Sense::Deed;
+        }
+        // "Drop the wind", "put the wind back": nobody can.
+        for i in 1..stretch.len() {
+            let wind = stretch[i].sense == Sense::Verb(Verb::Blow) && matches!(tokens[stretch[i].span.start].word.as_str(), "the" | "a");
+            let verb = &mut stretch[i - 1].sense;
+            if wind && matches!(verb, Sense::Verb(verb) if !matches!(verb, Verb::Blow | Verb::Stop | Verb::Run | Verb::Look | Verb::Field(_))) {
+                *verb = Sense::Deed;
+            }
         }
     }
 }

@@ -12,10 +12,11 @@ pub fn count(tokens: &mut [Token], fps: u32) -> Vec<String> {
     let mut notes = Vec::new();
     let mut at = 0;
     while at + 1 < tokens.len() {
-        let counted = if is_frame(tokens, at) && tokens[at + 1].number.is_some() {
-            tokens[at + 1].number
+        let one = |at: usize| numbers::number(tokens, at).filter(|(_, end)| *end == at + 1).map(|(value, _)| value);
+        let counted = if is_frame(tokens, at) && one(at + 1).is_some() {
+            one(at + 1)
         } else if is_frame(tokens, at + 1) && !is_rate(tokens, at + 2) {
-            numbers::number(tokens, at).filter(|(_, end)| *end == at + 1).map(|(value, _)| value)
+            one(at)
         } else {
             None
         };

@@ -70,7 +70,7 @@ pub const SECTIONS: &[Section] = &[
             Sense::Verb(Verb::Change(Fate::Dissolve)) => "dissolve|dissolves|dissolving",
             Sense::Verb(Verb::Change(Fate::Pulse)) => "breathe|breathes|breathing|pulse|pulses|pulsing|pulsate|pulsates|throb|throbs|muscle|muscles|a muscle|twitch|twitches",
             Sense::Verb(Verb::Change(Fate::Shatter)) => "shatter|shatters|shattered|shattering|break|breaks|broken|break up|breaks up|smash|smashes|crack|cracks|burst|bursts|tear|tears|split apart|splits apart|break apart|breaks apart",
-            Sense::Verb(Verb::Stop) => "stop|stops|stopped|halt|cancel|remove|delete|without the|take away|ignore|forget|forget about|kill|kills|lose|get rid of|no more|turn off|switch off|never mind the|nevermind the|never mind about|ditch",
+            Sense::Verb(Verb::Stop) => "stop|stops|stopped|halt|cancel|remove|delete|take away|ignore|forget|forget about|kill|kills|lose|get rid of|no more|turn off|switch off|never mind the|nevermind the|never mind about|ditch",
             Sense::Verb(Verb::Rest) => "stand still|stay|stays|stay still|stay put|at rest|do nothing|leave it alone|leave it|keep still|stop moving|stop everything|hold still|be still",
             Sense::Verb(Verb::Reset) => "put it back|put back|move it back where it was|where it was",
             Sense::Pose(Pose::UpsideDown) => "upside down|on its head|head down|bottom up|flip|flipped|flip over|flip it over|flips over|turn over|turn it over|head first",
@@ -257,7 +257,7 @@ pub const SECTIONS: &[Section] = &[
             Sense::Unbuilt(Unbuilt::Look) => "red|green|blue|yellow|white|black|pink|purple|grey|gray|transparent|invisible|glow|glows|glowing|shiny|colour|color|brighter|darker|fade|fades|disappear|vanish",
             Sense::Unbuilt(Unbuilt::Scene) => "scale|shrink|shrinks|grow|grows|duplicate|copy|clone|inflate|inflates",
             Sense::Unbuilt(Unbuilt::Filling) => "inside|the inside|its inside|on the inside|insides|interior|the interior|core|hollow|fill|fills|filled|filling|pour|pours|poured|pouring|spill|spills|flood|floods",
-            Sense::Unbuilt(Unbuilt::Front) => "from top to bottom|from bottom to top|from the top to the bottom|from the bottom to the top|top to bottom|bottom to top|from the top down|from the top downwards|from the bottom up|from left to right|from right to left|from the outside in|from the inside out|from one end to the other|bit by bit",
+            Sense::Unbuilt(Unbuilt::Front) => "from top to bottom|from bottom to top|from the top to the bottom|from the bottom to the top|top to bottom|bottom to top|from the top down|from the top downwards|from the bottom up|from left to right|from right to left|from the outside in|from the inside out|from one end to the other|bit by bit|little by little|gradually|progressively|over time|with time|more and more|less and less|continuously",
             Sense::Unbuilt(Unbuilt::Pendulum) => "pendulum|like a pendulum|as a pendulum",
             Sense::Unbuilt(Unbuilt::Playback) => "slow motion|slowmo|slow mo|time lapse|timelapse|in reverse|play backwards|rewind",
         },
@@ -269,9 +269,9 @@ pub const SECTIONS: &[Section] = &[
             Gravity(1.62) => "moon|the moon|on the moon|lunar|moon gravity|lunar gravity",
             Gravity(3.71) => "mars|on mars|martian|mars gravity",
             Gravity(24.79) => "jupiter|on jupiter|jupiter gravity",
-            Gravity(0.0) => "zero gravity|zero g|no gravity|without gravity|weightless|weightlessly|weightlessness|in space|outer space|in outer space|space|in orbit around earth|microgravity|free of gravity|gravity off|switch off gravity|turn off gravity|turn gravity off|turn off the gravity",
+            Gravity(0.0) => "zero gravity|zero g|no gravity|without gravity|weightless|weightlessly|weightlessness|in space|outer space|in outer space|space|in orbit around earth|microgravity|free of gravity|gravity off|switch off gravity|turn off gravity|turn gravity off|turn off the gravity|no more gravity|remove gravity|remove the gravity|kill gravity|kill the gravity|forget gravity|forget about gravity|turn the gravity off|switch the gravity off|switch off the gravity",
             Surface(0.02) => "ice|on ice|icy|on the ice|on an icy floor",
-            Surface(0.0) => "frictionless|no friction|without friction|zero friction",
+            Surface(0.0) => "frictionless|no friction|without friction|zero friction|no more friction|remove friction|remove the friction|forget friction",
             Surface(0.6) => "carpet|on carpet|on a carpet",
             Sense::Springy(0.8) => "trampoline|on a trampoline|on the trampoline",
             Sense::Springy(0.0) => "no bounce|no bouncing|not bounce|do not bounce|dont bounce|does not bounce|doesnt bounce|should not bounce|shouldnt bounce|must not bounce|mustnt bounce|never bounces|never bounce|wont bounce|not bouncy|without bouncing|without a bounce|without bounce|stop bouncing|stops bouncing|unbouncy",
@@ -345,7 +345,7 @@ pub const SECTIONS: &[Section] = &[
     Section {
         title: "Turns",
         entries: entries! {
-            Turn(TurnWord::Undo) => "undo|undo that|undo it|undo this|undo the last|take that back|take it back|revert|revert that|go back|go back one|step backwards|back one|one step back|previous version|go back to the previous version|back to the previous|back to the previous version|back to before|forget that|forget it|forget about it|forget about that|never mind|nevermind|scrap that|scrap it|undo last|undo the last turn|undo last turn|undo the turn|undo the last one|undo the last step|undo the last change|undo my last change",
+            Turn(TurnWord::Undo) => "undo|undo that|undo it|undo this|undo the last|take that back|take it back|revert|revert that|cancel that|cancel it|cancel this|go back|go back one|step backwards|back one|one step back|previous version|go back to the previous version|back to the previous|back to the previous version|back to before|forget that|forget it|forget about it|forget about that|never mind|nevermind|scrap that|scrap it|undo last|undo the last turn|undo last turn|undo the turn|undo the last one|undo the last step|undo the last change|undo my last change",
             Turn(TurnWord::Redo) => "redo|redo that|redo it|undo the undo|put that back|go forward again|redo the last",
             Turn(TurnWord::BackTo) => "back to version|go back to version|return to version|revert to version|back to|go back to|return to|revert to|restore|go to version|switch to version|version|as it was in",
             Turn(TurnWord::First) => "back to the first|go back to the first|back to the first version|go back to the first version|back to the start|go back to the start|back to the beginning|back to the original|go back to the original|return to the first|start over|start again|start from scratch|from the beginning|back to square one|reset|reset everything|reset all|the first version|back to the first one",
@@ -372,27 +372,32 @@ pub const SECTIONS: &[Section] = &[
             Sense::Preposition(Preposition::With) => "with",
             Sense::Preposition(Preposition::After) => "after|later",
             Sense::Preposition(Preposition::In) => "in|within",
-            Sense::Preposition(Preposition::On) => "on|upon",
+            Sense::Preposition(Preposition::On) => "on|upon|on top of|on the top of|onto the top of|atop",
             Sense::Preposition(Preposition::Of) => "of|out of",
             Sense::Preposition(Preposition::Until) => "until|till|up to|up until",
             Sense::Preposition(Preposition::Around) => "around|round|about",
             Sense::Preposition(Preposition::Along) => "along",
             Sense::Preposition(Preposition::Into) => "into",
-            Sense::Negation => "not|dont|do not|doesnt|does not|didnt|isnt|is not|arent|are not|wasnt|werent|never|no|none|nothing|nor|neither|without|cannot|can not|cant|wont|will not|should not|shouldnt|must not|mustnt|avoid|prevent|prevents|keep from",
-            Sense::Condition => "if|when|whenever|unless|while|before|because|every|or|until it|until they|until he|till it|till they|as long as|as soon as|by the time|in case|provided",
+            Sense::Negation => "not|dont|do not|doesnt|does not|didnt|isnt|is not|arent|are not|wasnt|werent|never|no|none|nothing|nor|neither|without|without the|without any|cannot|can not|cant|wont|will not|should not|shouldnt|must not|mustnt|avoid|prevent|prevents|keep from",
+            Sense::Condition => "if|when|whenever|unless|while|before|because|every|or|until it|until they|until he|till it|till they|as long as|as soon as|by the time|in case|provided|at the end|at the very end|near the end|towards the end|in the end|in the last|for the last|during the last",
             Sense::Question => "why|how|what|where|who|which|whose",
             Sense::Except => "except|except for|excepting|excluding|apart from|other than|all but|everything but|anything but|but for|save for|aside from",
-            Sense::Limit => "below|beneath|underneath|above|outside|minus|beyond|partly|partially",
+            Sense::Limit => "below|beneath|underneath|above|outside|minus|beyond|partly|partially|handle|handles|neck|lid|spout|arm|arms|leg|legs|wheels|tail|wing|wings|ears|stem|twig|twigs|branch|branches|corner|corners|skin|crust|shell|coating|outer layer|outer|its surface|surface of it|mix|mixture|blend|combination|half and half",
             Sense::Whole => "whole|entire|entirely|wholly|all over|through and through",
             Sense::Ends => "dies down|die down|dies away|dies off|dies|subsides|calms down|lets up|ceases|fades away|fades out|drops off|ends|comes to an end|blows over",
             Sense::Wait => "wait|waits|wait for|waiting|stand|stands|standing|stand there|pause|pauses|let it stand|let it rest|let it be",
             Sense::Replace => "replace|replaces|replaced|swap|swaps|exchange|substitute",
-            Sense::Instead => "instead|rather than that|not that way",
+            Sense::Instead => "instead|rather than that|not that way|instead of|rather than|in place of|as opposed to",
             Sense::Separator => "and|then|,|;|but|also|and then|plus|after that|afterwards|next|finally|as well as|at the same time|meanwhile|followed by",
-            Filler => "add|adds|build|please|pls|first|firstly|to begin with|use|t|kindly|thanks|thank you|thx|hey|hi|hello|ok|okay|well|so|now|right now|just|simply|maybe|perhaps|can|could|would|should|will|shall|must|you|i|we|us|me|id|lets|let|want|wants|like|need|needs|to see|see|make|makes|making|made|so that|have|has|having|get|gets|getting|give|gives|cause|do|does|doing|become|becomes|be|is|are|being|were|go|goes|going|try|point|points|pointing|change|changes|set|adjust|same|the same|the same thing|too|as well|even|still|only|than|than before|than that|than now|than this|than it was|as before|this time|for me|actually|hmm|oh|yes|yeah|yep|sure|what if|what about|how about|alright|approximately|roughly|exactly|about it|start|starts|starting|begin|begins|value|in the direction|own|something|made of|made out of|material|somehow|step|steps|nope|nah|elastically|by itself|on its own|imagine|suppose|assume|pretend|render|create|generate|apply|produce|introduce|turn on|switch on|make sure|ensure|after all|all the time|the whole time|all along|throughout|forever|until the end|till the end|to the end|to the very end|until the very end|basically|hopefully|kind of|sort of|um|uh|er",
+            Filler => "add|adds|build|please|pls|first|firstly|to begin with|use|t|kindly|thanks|thank you|thx|hey|hi|hello|ok|okay|well|so|now|right now|just|simply|maybe|perhaps|can|could|would|should|will|shall|must|you|i|we|us|me|id|lets|let|want|wants|like|need|needs|to see|see|make|makes|making|made|so that|have|has|having|get|gets|getting|give|gives|cause|do|does|doing|become|becomes|be|is|are|being|were|go|goes|going|try|point|points|pointing|change|changes|set|adjust|same|the same|the same thing|too|as well|even|still|only|than|than before|than that|than now|than this|than it was|as before|this time|for me|actually|hmm|oh|yes|yeah|yep|sure|what if|what about|how about|alright|approximately|roughly|exactly|about it|start|starts|starting|begin|begins|value|in the direction|own|something|made of|made out of|material|somehow|step|steps|nope|nah|elastically|by itself|on its own|imagine|suppose|assume|pretend|render|create|generate|apply|produce|introduce|turn on|switch on|make sure|ensure|after all|all the time|the whole time|all along|throughout|forever|until the end|till the end|to the end|to the very end|until the very end|basically|hopefully|kind of|sort of|love|at least|at most|no more than|not more than|no less than|not less than|if you could|if you can|if you would|if you like|if you please|if possible|or so|or something|what happens if you|what happens when you|what happens if we|what happens when we|what happens|um|uh|er",
         },
     },
 ];
+
+/// Whether a word means a material.
+pub fn names_material(word: &str) -> bool {
+    PATTERNS.get(word).is_some_and(|patterns| patterns.iter().any(|p| p.words == [word] && matches!(p.sense, Sense::Material(_))))
+}
 
 /// An entry ready to match: its words and its sense.
 pub struct Pattern {

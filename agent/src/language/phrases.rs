@@ -156,6 +156,13 @@ fn landing(tokens: &[Token], at: usize, names: &Names) -> Option<(Sense, usize)>
         ("as", "soon", "as") => at + 3,
         _ => return None,
     };
+    // "After two bounces"
+    if let Some((times, verb)) =
+        numbers::number(tokens, who).filter(|(_, end)| matches!(word(*end), "bounce" | "bounces" | "impacts" | "hits" | "landings"))
+    {
+        let moment = if times == 1.0 { Moment::Landing } else { Moment::LaterLanding };
+        return Some((Sense::Moment(moment), verb + 1 - at));
+    }
     let named = |i: usize| names.read(tokens, i).map_or(1, |(_, length)| length);
     let verb = match word(who) {
         "it" | "they" if matches!(word(who + 1), "has" | "have" | "first") => who + 2,

@@ -8,23 +8,31 @@ use std::ops::Range;
 /// Nouns of parts ("flowers", "pot") are such only where the stretch asks for something that a part can have: "push the
 /// flowers" means the thing that they stand in.
 pub fn demote_parts(reading: &mut Reading) {
-    // "The base and the flowers" goes with what was asked of the base.
-    let mut asked = false;
-    for stretch in reading.phrases.split_mut(|p| p.sense == Sense::Separator) {
-        let noun = |s: &Sense| matches!(s, Sense::Part(Part::Flowers | Part::Pot));
-        let moves = |s: &Sense| matches!(s, Sense::Verb(verb) if !matches!(verb, Verb::Pin | Verb::Hang | Verb::Release | Verb::Change(_) | Verb::Turn | Verb::Move));
-        let had = |s: &Sense| {
-            matches!(s, Sense::Material(_) | Sense::Quality(..) | Sense::Property(_) | Sense::Unbuilt(_) | Sense::Smoothed(_) | Sense::Measure(..))
-                || matches!(s, Sense::Verb(Verb::Pin | Verb::Hang | Verb::Release | Verb::Change(_)))
-                || matches!(s, Sense::Part(_)) && !noun(s)
-        };
-        let bare = !stretch.iter().any(|p| super::clause::asks(&p.sense) || had(&p.sense));
-        let asks = !stretch.iter().any(|p| moves(&p.sense)) && stretch.iter().any(|p| had(&p.sense));
-        asked = if bare { asked } else { asks };
+    // "The base and the flowers" goes with what was asked of the base, "the flowers and the pot are steel" with what is to come.
+    let asks = reading.phrases.split(|p| p.sense == Sense::Separator).map(asks_of_part).collect::<Vec<_>>();
+    for (i, stretch) in reading.phrases.split_mut(|p| p.sense == Sense::Separator).enumerate() {
+        let asked = asks[..=i].iter().rev().chain(&asks[i..]).find_map(|asks| *asks).unwrap_or(false);
         if !asked {
-            stretch.iter_mut().filter(|p| noun(&p.sense)).for_each(|p| p.sense = Sense::Unknown);
+            stretch.iter_mut().filter(|p| is_noun_of_part(&p.sense)).for_each(|p| p.sense = Sense::Unknown);
         }
     }
+}
+
+fn is_noun_of_part(sense: &Sense) -> bool {
+    matches!(sense, Sense::Part(Part::Flowers | Part::Pot))
+}
+
+/// Whether a stretch asks for something that a part can have; none where it asks for nothing.
+fn asks_of_part(stretch: &[Phrase]) -> Option<bool> {
+    let kept = |verb: Verb| matches!(verb, Verb::Pin | Verb::Hang | Verb::Release | Verb::Change(_));
+    let moves = |s: &Sense| matches!(s, Sense::Verb(verb) if !kept(*verb) && !matches!(verb, Verb::Turn | Verb::Move));
+    let had = |s: &Sense| {
+        matches!(s, Sense::Material(_) | Sense::Quality(..) | Sense::Property(_) | Sense::Unbuilt(_) | Sense::Smoothed(_) | Sense::Measure(..))
+            || matches!(s, Sense::Verb(verb) if kept(*verb))
+            || matches!(s, Sense::Part(_)) && !is_noun_of_part(s)
+    };
+    let any = |pick: &dyn Fn(&Sense) -> bool| stretch.iter().any(|p| pick(&p.sense));
+    (any(&super::clause::asks) || any(&had)).then(|| !any(&moves) && any(&had))
 }
 
 /// Nouns of things around ("wall", "ball") are such only where one is put there, "put a wall on the left", or taken away:

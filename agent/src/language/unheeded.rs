@@ -6,6 +6,7 @@ use super::beside;
 use super::clause::Clause;
 use super::draft::{Draft, Refusal};
 use super::numbers::Dimension;
+use super::phrases::Phrase;
 use super::sense::{Field, Moment, Sense, Verb};
 
 /// Why a clause is refused whose readers left such a word; None where they left none.
@@ -17,7 +18,7 @@ pub fn refusal(clause: &Clause, draft: &Draft) -> Option<Refusal> {
 fn limit(clause: &Clause, draft: &Draft) -> Option<Refusal> {
     let (index, hint) = clause.left_indices().find_map(|i| Some((i, meant(clause, draft, i)?)))?;
     let phrase = &clause.phrases()[index];
-    let why = if phrase.sense == Sense::Deed { "is no verb that is known" } else { "changes what is meant, and is not understood there" };
+    let why = if phrase.sense == Sense::Deed { "is no verb that is known there" } else { "changes what is meant, and is not understood there" };
     Some(format!("\"{}\" {why}: {hint}", draft.words(phrase.span.clone())))
 }
 
@@ -27,7 +28,7 @@ fn meant(clause: &Clause, draft: &Draft, i: usize) -> Option<&'static str> {
     let next = phrases[i + 1..].iter().map(|p| &p.sense).find(|s| !matches!(s, Sense::Article | Sense::Quality(..)));
     Some(match &phrases[i].sense {
         // "The steel vase" only describes, where nobody makes it of that.
-        Sense::Material(_) if matches!(next, Some(Sense::Objects(_) | Sense::It)) => return None,
+        Sense::Material(_) if matches!(next, Some(Sense::Objects(_) | Sense::It)) && !several(phrases) => return None,
         Sense::Material(_) => "one thing or part is of one material at a time: \"the top is steel\", \"turn it into water at 1 s\"",
         Sense::Stuff(_) => {
             "stuff that an event or a part brings is more or less of something: \"make the sand stickier\"; \"undo that\" takes it back"
@@ -41,8 +42,11 @@ fn meant(clause: &Clause, draft: &Draft, i: usize) -> Option<&'static str> {
         },
         Sense::Negation => "\"don't spin\", \"no jump\", \"stop the wind\" and \"undo\" deny something",
         Sense::Except => "what is left out is a part, and what is asked for a material from the start: \"everything except the top is steel\"",
-        Sense::Limit => "parts are said by name: \"the lower half\", \"the upper third\", \"the base\", \"the flowers\"",
+        Sense::Limit => limit_hint(&draft.words(phrases[i].span.clone()).to_lowercase()),
         Sense::Ends => "say when: \"stop the wind at 1 s\", \"wind from the left until 1 s\"",
+        Sense::Verb(verb) if !matches!(verb, Verb::Run | Verb::Look | Verb::Zoom(_) | Verb::Orbit | Verb::Move | Verb::Turn) => {
+            "it goes in a clause of its own, \"melt it, and look from above\""
+        }
         Sense::Change(_) => "more and less go with what there is: \"less stiff\", \"a weaker wind\", \"half the gravity\"",
         Sense::Replace => "\"replace the water with honey\" says what and by what",
         Sense::Moment(moment) => moment_hint(*moment, clause.verb())?,
@@ -60,6 +64,21 @@ fn meant(clause: &Clause, draft: &Draft, i: usize) -> Option<&'static str> {
         }
         _ => return None,
     })
+}
+
+fn limit_hint(words: &str) -> &'static str {
+    if words.starts_with("from ") {
+        "a side goes with its verb, \"wind from the right\", \"look from the right\""
+    } else if words.starts_with("mix") || super::lexicon::names_material(words) {
+        "a thing is of one material, and so is each part of it: \"the top is rubber and the base is steel\""
+    } else {
+        "parts are said by name: \"the lower half\", \"the upper third\", \"the base\", \"the flowers\""
+    }
+}
+
+/// Whether more than one material is named.
+fn several(phrases: &[Phrase]) -> bool {
+    phrases.iter().filter(|p| matches!(p.sense, Sense::Material(_))).count() > 1
 }
 
 fn moment_hint(moment: Moment, verb: Option<Verb>) -> Option<&'static str> {

@@ -265,7 +265,11 @@ pub fn is_light(verb: Verb, clause: &Clause) -> bool {
         Verb::Turn => (material && (into || !directed)) || property || pose,
         Verb::Move => ((material || place || pose || driven) && !directed) || property,
         Verb::Lift => property,
-        Verb::Change(_) => material,
+        // "It shatters into sand", not "the sand melts".
+        Verb::Change(_) => {
+            let at = |pick: &dyn Fn(&Sense) -> bool| clause.phrases().iter().position(|p| pick(&p.sense));
+            material && at(&|s| *s == Sense::Verb(verb)) < at(&|s| matches!(s, Sense::Material(_) | Sense::Unbuilt(_)))
+        }
         _ => false,
     }
 }

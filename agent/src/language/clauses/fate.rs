@@ -3,7 +3,7 @@
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
 use super::super::say;
-use super::super::sense::{Fate, Property};
+use super::super::sense::{Fate, Property, Sense, Verb};
 use super::parts::{self, Owner};
 use super::stuff::{become_stuff, freezes};
 use super::when::When;
@@ -18,6 +18,9 @@ const PULSE: (f64, f64) = (0.2, 1.0);
 
 /// Reads one such verb with all that belongs to it.
 pub fn understand(fate: Fate, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    if clause.has(|s| matches!(s, Sense::View(_))) && !clause.has(|s| matches!(s, Sense::Camera | Sense::Verb(Verb::Look))) {
+        return Err("a part changes as one, \"the top melts at 1 s\"; the camera is asked in a clause of its own, \"look from above\"".to_owned());
+    }
     let owners = parts::owners(clause, draft)?;
     let Some(first) = owners.first().map(|owner| owner.object) else { return Ok(()) };
     let when = When::take(clause, draft, first)?;
@@ -26,6 +29,10 @@ pub fn understand(fate: Fate, clause: &mut Clause, draft: &mut Draft) -> Result<
     let pace = scale.map_or(1.0, |s| s.ratio);
     for owner in owners {
         let object = owner.object;
+        // An event of the whole is one of its parts too.
+        if when != When::Start && owner.part.is_some() && draft.spec.events.iter().any(|e| when.is_of(e) && e.part.is_none() && is_of(fate, e)) {
+            continue;
+        }
         let name = draft.name(object);
         if scale.is_some_and(|s| s.compared) && when == When::Start && melts_already(pace, &owner, draft) {
             continue;

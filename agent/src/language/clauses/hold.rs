@@ -105,6 +105,18 @@ pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
         draft.gloss.push("the camera stands still".to_owned());
         return Ok(());
     }
+    let nothing = verb.is_none()
+        && clause.phrases().iter().any(|p| {
+            matches!(p.sense, Sense::Property(_) | Sense::Camera | Sense::Quality(..) | Sense::Gravity(_) | Sense::Surface(_) | Sense::Unknown)
+                || p.sense == Sense::Verb(Verb::Stop)
+                    && !draft.words(p.span.clone()).to_lowercase().starts_with("stop")
+                    && draft.words(p.span.clone()) != "halt"
+        });
+    if nothing {
+        return Err(
+            "what is to end is a motion, a wind or a hold, \"stop the wind\", \"no spin\"; things stay, and \"undo\" takes a turn back".to_owned()
+        );
+    }
     let objects = draft.subjects(clause)?;
     clause.take_directions();
     let at_s = clause.take_at().map(say::tidy);

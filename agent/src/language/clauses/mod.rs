@@ -20,7 +20,7 @@ pub mod world;
 use super::clause::Clause;
 use super::draft::{Draft, Refusal};
 use super::numbers::Dimension;
-use super::sense::{Field, Preposition, Sense, Unbuilt, Verb};
+use super::sense::{Field, Preposition, Property, Sense, Unbuilt, Verb};
 use phystalk::spec::presets;
 
 /// Understands one clause. What it changed stands in the draft; what it did not take is left in the clause.
@@ -36,6 +36,14 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     // "Onto the stone floor", "a wooden box" say nothing of the thing.
     if let Some(name) = clause.take_before(|s| *s == Sense::Ground, stuff) {
         draft.gloss.push(format!("that the ground is of {name} is not heeded: \"slippery\" and \"bouncier\" set its friction and its restitution"));
+    }
+    let firm = |s: &Sense| {
+        if let Sense::Quality(Property::Stiffness | Property::Hardness | Property::Density | Property::Size, ..) = s { Some(()) } else { None }
+    };
+    if clause.take_before(|s| *s == Sense::Ground, firm).is_some() {
+        draft
+            .gloss
+            .push("how hard or large the ground is is not heeded: \"slippery\" and \"bouncier\" set its friction and its restitution".to_owned());
     }
     let scenery = |s: &Sense| matches!(s, Sense::Scenery(_));
     if let Some(name) = clause.take_before(scenery, stuff) {

@@ -92,6 +92,20 @@ pub fn owners(clause: &mut Clause, draft: &mut Draft) -> Result<Vec<Owner>, Refu
     }
     let parts = take_all(clause);
     let objects = draft.subjects(clause)?;
+    if parts.contains(&Some(Part::Rest)) && super::when::is_said(clause) {
+        return Err("the rest changes at a time only where it is named: \"the lower half melts at 1 s\"".to_owned());
+    }
+    // "Everything", "the whole vase": its parts too.
+    let whole = parts == [None] && clause.phrases().iter().any(|p| matches!(p.sense, Sense::All | Sense::Whole));
+    if whole {
+        let each = |object: usize| {
+            let thing = &draft.spec.objects[object];
+            let own = thing.parts.iter().enumerate();
+            let parts = own.map(move |(part, p)| Owner { object, part: Some(part), event: None, said: format!("{} of {}", p.name, thing.name) });
+            std::iter::once(Owner { object, part: None, event: None, said: thing.name.clone() }).chain(parts).collect::<Vec<_>>()
+        };
+        return Ok(objects.into_iter().flat_map(each).collect());
+    }
     Ok(objects
         .into_iter()
         .flat_map(|object| parts.iter().map(move |part| (object, *part)))

@@ -1,6 +1,6 @@
 //! Verbs that say how and where an object starts: drop, lift, move, turn, tilt, and poses.
 
-use super::super::clause::{Clause, qualifies};
+use super::super::clause::{Clause, HARD, qualifies};
 use super::super::draft::{Draft, Refusal, rotate_deg, rotation};
 use super::super::numbers::Dimension;
 use super::super::say;
@@ -47,7 +47,9 @@ pub fn drop(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     clause.take_sense(&Sense::AboveGround);
     clause.take_sense(&Sense::View(View::Above));
     let scale = clause.take_scale(qualifies(Verb::Fall));
-    let vigour = clause.take_vigour();
+    // "Drop it hard" says nothing of what it is made of.
+    let hard = clause.take(|s| matches!(s, Sense::Quality(Property::Hardness, ..)).then_some(HARD)).unwrap_or(1.0);
+    let vigour = hard * clause.take_vigour();
     for &object in &objects {
         let before = draft.gap_m(object);
         let usual = match scale {

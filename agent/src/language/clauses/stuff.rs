@@ -125,6 +125,8 @@ pub struct Role {
     was: Option<&'static str>,
     /// "Replace the water with honey": what is there and is to be of other stuff.
     instead: bool,
+    /// "Heavier than steel": one property of it, and more or less of that.
+    than: bool,
 }
 
 /// Takes what a clause says of materials: the last one that a verb leads to is what it becomes, the one that describes
@@ -139,7 +141,7 @@ pub fn take_role(clause: &mut Clause, draft: &Draft) -> Result<Option<Role>, Ref
     for i in clause.left_indices() {
         let Some(Sense::Material(name)) = sense(i) else { continue };
         let source = matches!(lead(i), Some(Sense::Preposition(Preposition::From) | Sense::Replace));
-        let describes = matches!(sense(i + 1), Some(Sense::Objects(_) | Sense::It | Sense::Material(_)));
+        let describes = matches!(sense(i + 1), Some(Sense::Objects(_) | Sense::It));
         if source || describes { earlier.push((i, *name)) } else { later.push((i, *name)) }
     }
     if let (true, Some((_, name)), [_, ..]) = (replaces, earlier.first(), &later[..])
@@ -147,23 +149,39 @@ pub fn take_role(clause: &mut Clause, draft: &Draft) -> Result<Option<Role>, Ref
     {
         return Err(format!("nothing here is of {name}: \"make it of {}\"", later[0].1));
     }
-    let was = earlier.first().copied().filter(|_| !later.is_empty());
+    // "Turn the water into honey"
+    let into = |i: usize| matches!(lead(i), Some(Sense::Preposition(Preposition::Into | Preposition::To)));
+    if let [(_, from), (at, to)] = later[..]
+        && into(at)
+        && !clause.has(|s| *s == Sense::As)
+    {
+        return Err(format!("nothing here is of {from}: \"make it of {to}\", \"turn it into {to}\""));
+    }
+    // "A steel vase with jelly flowers" is both from the start.
+    let with = later.first().is_some_and(|(i, _)| lead(*i) == Some(&Sense::Preposition(Preposition::With)));
+    let was = earlier.first().copied().filter(|_| !later.is_empty() && (!with || replaces));
     let Some((at, becomes)) = later.first().or(earlier.first()).copied() else { return Ok(None) };
+    let than = lead(at).is_some()
+        && phrases[..at].iter().rfind(|p| p.sense != Sense::Article).is_some_and(|p| draft.words(p.span.clone()).eq_ignore_ascii_case("than"));
     clause.take_at_index(at);
     if let Some((at, _)) = was {
         clause.take_at_index(at);
     }
     clause.take_sense(&Sense::Replace);
-    Ok(Some(Role { becomes, was: was.map(|(_, name)| name), instead: replaces }))
+    Ok(Some(Role { becomes, was: was.map(|(_, name)| name), instead: replaces, than }))
 }
 
 /// A preset by its name; "elastic" alone is the automatic stiffness of things of no named material.
 pub fn material(role: Role, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let name = role.becomes;
     // "as soft as jelly", "the stiffness of rubber": that property alone.
-    let like = clause.has(|s| *s == Sense::As) || clause.has(|s| matches!(s, Sense::Property(_)));
-    let times = clause.has(|s| matches!(s, Sense::Factor(_)));
+    let compared = role.than || clause.has(|s| *s == Sense::As);
+    let like = compared || clause.has(|s| matches!(s, Sense::Property(_)));
+    let times = role.than || clause.has(|s| matches!(s, Sense::Factor(_)));
     let only = if like { clause.take_scale(&[Property::Stiffness, Property::Hardness, Property::Density]) } else { None };
+    if compared && only.is_none() && clause.has(|s| matches!(s, Sense::Quality(..) | Sense::Property(_))) {
+        return Err(format!("only weight and stiffness go by those of {name}: \"as heavy as {name}\"; \"make it of {name}\" gives it all"));
+    }
     let mut stuff = presets::material(name).map(|preset| preset.material.clone()).or_else(|| Material::of_kind(name));
     let by_particles = smoothed(clause, stuff.as_mut());
     // What is said of the time of a motion is the motion's.
@@ -172,10 +190,14 @@ pub fn material(role: Role, clause: &mut Clause, draft: &mut Draft) -> Result<()
     }
     let spared = clause.take_after(&Sense::Except, |s| if let Sense::Part(part) = s { Some(*part) } else { None });
     let whole = spared.is_some() || clause.phrases().iter().any(|p| matches!(p.sense, Sense::All | Sense::Whole));
-    let owners = match (role.instead, role.was) {
+    let mut owners = match (role.instead, role.was) {
         (true, Some(was)) => parts::owners_of(was, draft),
         _ => parts::owners(clause, draft)?,
     };
+    // Its parts follow it below, but for one that is left out.
+    if whole && owners.iter().any(|owner| owner.part.is_none()) {
+        owners.retain(|owner| owner.part.is_none());
+    }
     let Some(object) = owners.first().map(|o| o.object) else { return Ok(()) };
     let later = !moves(clause) && only.is_none();
     let when = if later { When::take(clause, draft, object)? } else { When::Start };
@@ -240,7 +262,7 @@ fn parts_of_their_own(whole: bool, spared: Option<usize>, owner: &Owner, draft: 
     if !changed.is_empty() {
         draft.gloss.push(format!("{} too", say::list(&changed)));
     }
-    if !kept.is_empty() {
+    if !kept.is_empty() && !owner.said.starts_with("the rest of") {
         draft.gloss.push(format!("{}: \"make all of it …\" changes that too", say::list(&kept)));
     }
 }
