@@ -31,6 +31,8 @@ struct Control {
     crowded: atomic<u32>,
     // Most blocks that the grid was asked to store.
     blocks: atomic<u32>,
+    // 1 where a body touched more things than it has slots for.
+    unmet: atomic<u32>,
 }
 
 // Power of two that brings the momenta of a substep to `momentum_bits`. Where the sums are made before all

@@ -1,6 +1,7 @@
 // Where a body meets colliders and other bodies. One workgroup a body: each of its surface points
 // slides down the other's distance to where the two surfaces face each other, and at most four of the
-// points in reach are kept: the deepest, the one farthest from it, and the two that widen them most.
+// points in reach are kept: the deepest, the one farthest from it, and the two that widen them most. Of
+// more things that touch it than there are slots the deepest are kept.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> colliders: array<Collider>;
@@ -13,11 +14,17 @@
 @group(0) @binding(7) var<storage, read_write> contacts: array<Contact>;
 // Two vec4 a point: its place in the body frame and its gap, the normal.
 @group(0) @binding(8) var<storage, read_write> scratch: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read_write> control: Control;
 var<immediate> substep: Substep;
 
+// Colliders and bodies within reach: a bit each, then a list.
 var<workgroup> reached: array<atomic<u32>, 8>;
-var<workgroup> listed: array<u32, RIGID_SLOTS>;
+var<workgroup> listed: array<u32, 256>;
 var<workgroup> listed_count: u32;
+// The smallest gap in each slot that is taken, how many are, and the one of the present thing.
+var<workgroup> slot_gap_m: array<f32, RIGID_SLOTS>;
+var<workgroup> slots_taken: u32;
+var<workgroup> own_slot: u32;
 var<workgroup> best_value: array<f32, RIGID_LANES>;
 var<workgroup> best_point: array<u32, RIGID_LANES>;
 // The contacts of the substep before: place, impulse, with whom.
@@ -182,17 +189,12 @@ fn inherit(other: u32, local: vec3<f32>, apart_m: f32) -> vec4<f32> {
     return old_impulse[found];
 }
 
-@compute @workgroup_size(RIGID_LANES)
-fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
-    let a = group.x;
-    let shape_points = shapes[a].points;
-    let first = shapes[a].first_point;
-    let apart_m = shapes[a].apart_m;
+// Lists what is within reach of the body, by its number; how much that is.
+fn list_reached(a: u32, lane: u32) -> u32 {
     let others = params.collider_count + arrayLength(&bodies);
     if (lane < 8u) {
         atomicStore(&reached[lane], 0u);
     }
-    old_contacts(a, lane);
     workgroupBarrier();
     for (var other = lane; other < others; other += RIGID_LANES) {
         if (other != params.collider_count + a && within_reach(a, other)) {
@@ -204,82 +206,133 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         var count = 0u;
         for (var word = 0u; word < 8u; word++) {
             var bits = atomicLoad(&reached[word]);
-            while (bits != 0u && count < RIGID_SLOTS) {
-                let bit = firstTrailingBit(bits);
+            while (bits != 0u) {
+                listed[count] = 32u * word + firstTrailingBit(bits);
                 bits &= bits - 1u;
-                listed[count] = 32u * word + bit;
                 count += 1u;
             }
         }
         listed_count = count;
+        slots_taken = 0u;
     }
-    let count = workgroupUniformLoad(&listed_count);
+    return workgroupUniformLoad(&listed_count);
+}
+
+// Slides all points towards the other; the deepest, RIGID_POINTS where none is in reach.
+fn deepest_point(a: u32, other: u32, lane: u32) -> u32 {
+    let first = shapes[a].first_point;
+    let margin_m = margin_of(a, other);
+    var value = -NOWHERE;
+    var mine = RIGID_POINTS;
+    for (var p = lane; p < shapes[a].points; p += RIGID_LANES) {
+        let found = slide(a, other, points[first + p].xyz, margin_m);
+        scratch[2u * (first + p)] = vec4<f32>(found.local, select(NOWHERE, found.gap_m, found.gap_m < margin_m));
+        scratch[2u * (first + p) + 1u] = vec4<f32>(found.normal, 0.0);
+        if (found.gap_m < margin_m && -found.gap_m > value) {
+            value = -found.gap_m;
+            mine = p;
+        }
+    }
+    storageBarrier();
+    return winner(lane, value, mine);
+}
+
+// A slot for what comes as near as this: a free one, or that of what is farthest off; RIGID_SLOTS where all are nearer.
+fn slot_for(gap_m: f32) -> u32 {
+    var slot = slots_taken;
+    if (slot < RIGID_SLOTS) {
+        slots_taken += 1u;
+    } else {
+        atomicStore(&control.unmet, 1u);
+        slot = 0u;
+        for (var k = 1u; k < RIGID_SLOTS; k++) {
+            slot = select(slot, k, slot_gap_m[k] > slot_gap_m[slot]);
+        }
+        if (gap_m >= slot_gap_m[slot]) {
+            return RIGID_SLOTS;
+        }
+    }
+    slot_gap_m[slot] = gap_m;
+    return slot;
+}
+
+// The deepest point, and up to three that spread from it.
+fn spread_from(a: u32, p0: u32, lane: u32) -> vec4<u32> {
+    let count = shapes[a].points;
+    let first = shapes[a].first_point;
+    let least = 0.25 * shapes[a].apart_m;
+    let x0 = scratch[2u * (first + p0)].xyz;
+    var chosen = vec4<u32>(p0, RIGID_POINTS, RIGID_POINTS, RIGID_POINTS);
+    var value = -NOWHERE;
+    var mine = RIGID_POINTS;
+    for (var p = lane; p < count; p += RIGID_LANES) {
+        let s = scratch[2u * (first + p)];
+        let far = distance(s.xyz, x0);
+        if (s.w < NOWHERE && far > max(value, least)) {
+            value = far;
+            mine = p;
+        }
+    }
+    chosen.y = winner(lane, value, mine);
+    let x1 = scratch[2u * (first + min(chosen.y, count - 1u))].xyz;
+
+    value = -NOWHERE;
+    for (var p = lane; p < count; p += RIGID_LANES) {
+        let s = scratch[2u * (first + p)];
+        let far = length(cross(s.xyz - x0, x1 - x0)) / max(distance(x0, x1), 1e-20);
+        if (s.w < NOWHERE && far > max(value, least)) {
+            value = far;
+            mine = p;
+        }
+    }
+    chosen.z = select(RIGID_POINTS, winner(lane, value, mine), chosen.y < RIGID_POINTS);
+    let x2 = scratch[2u * (first + min(chosen.z, count - 1u))].xyz;
+
+    value = -NOWHERE;
+    for (var p = lane; p < count; p += RIGID_LANES) {
+        let s = scratch[2u * (first + p)];
+        let far = outside(s.xyz, x0, x1, x2);
+        if (s.w < NOWHERE && far > max(value, least)) {
+            value = far;
+            mine = p;
+        }
+    }
+    chosen.w = select(RIGID_POINTS, winner(lane, value, mine), chosen.z < RIGID_POINTS);
+    return chosen;
+}
+
+@compute @workgroup_size(RIGID_LANES)
+fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
+    let a = group.x;
+    old_contacts(a, lane);
+    let count = list_reached(a, lane);
     for (var k = 0u; k < count; k++) {
         let other = workgroupUniformLoad(&listed[k]);
-        let margin_m = margin_of(a, other);
-        var value = -NOWHERE;
-        var mine = RIGID_POINTS;
-        for (var p = lane; p < shape_points; p += RIGID_LANES) {
-            let found = slide(a, other, points[first + p].xyz, margin_m);
-            scratch[2u * (first + p)] = vec4<f32>(found.local, select(NOWHERE, found.gap_m, found.gap_m < margin_m));
-            scratch[2u * (first + p) + 1u] = vec4<f32>(found.normal, 0.0);
-            if (found.gap_m < margin_m && -found.gap_m > value) {
-                value = -found.gap_m;
-                mine = p;
-            }
+        let deepest = deepest_point(a, other, lane);
+        if (deepest == RIGID_POINTS) {
+            continue;
         }
-        storageBarrier();
-        let p0 = winner(lane, value, mine);
-        var chosen = vec4<u32>(p0, RIGID_POINTS, RIGID_POINTS, RIGID_POINTS);
-        let least = 0.25 * apart_m;
-        let x0 = scratch[2u * (first + min(p0, shape_points - 1u))].xyz;
-
-        value = -NOWHERE;
-        for (var p = lane; p < shape_points; p += RIGID_LANES) {
-            let s = scratch[2u * (first + p)];
-            let far = distance(s.xyz, x0);
-            if (s.w < NOWHERE && far > max(value, least)) {
-                value = far;
-                mine = p;
-            }
-        }
-        chosen.y = winner(lane, value, mine);
-        let x1 = scratch[2u * (first + min(chosen.y, shape_points - 1u))].xyz;
-
-        value = -NOWHERE;
-        for (var p = lane; p < shape_points; p += RIGID_LANES) {
-            let s = scratch[2u * (first + p)];
-            let far = length(cross(s.xyz - x0, x1 - x0)) / max(distance(x0, x1), 1e-20);
-            if (s.w < NOWHERE && far > max(value, least)) {
-                value = far;
-                mine = p;
-            }
-        }
-        chosen.z = select(RIGID_POINTS, winner(lane, value, mine), chosen.y < RIGID_POINTS);
-        let x2 = scratch[2u * (first + min(chosen.z, shape_points - 1u))].xyz;
-
-        value = -NOWHERE;
-        for (var p = lane; p < shape_points; p += RIGID_LANES) {
-            let s = scratch[2u * (first + p)];
-            let far = outside(s.xyz, x0, x1, x2);
-            if (s.w < NOWHERE && far > max(value, least)) {
-                value = far;
-                mine = p;
-            }
-        }
-        chosen.w = select(RIGID_POINTS, winner(lane, value, mine), chosen.z < RIGID_POINTS);
         if (lane == 0u) {
-            keep(a, k, other, chosen);
+            own_slot = slot_for(scratch[2u * (shapes[a].first_point + deepest)].w);
+        }
+        let slot = workgroupUniformLoad(&own_slot);
+        if (slot == RIGID_SLOTS) {
+            continue;
+        }
+        let chosen = spread_from(a, deepest, lane);
+        if (lane == 0u) {
+            keep(a, slot, other, chosen);
         }
         workgroupBarrier();
     }
-    for (var k = count + lane; k < RIGID_SLOTS; k += RIGID_LANES) {
-        manifolds[a * RIGID_SLOTS + k].count = 0u;
+    for (var slot = workgroupUniformLoad(&slots_taken) + lane; slot < RIGID_SLOTS; slot += RIGID_LANES) {
+        manifolds[a * RIGID_SLOTS + slot].count = 0u;
     }
 }
 
-fn keep(a: u32, k: u32, other: u32, chosen: vec4<u32>) {
-    let slot = a * RIGID_SLOTS + k;
+// Writes a manifold and its contacts.
+fn keep(a: u32, own: u32, other: u32, chosen: vec4<u32>) {
+    let slot = a * RIGID_SLOTS + own;
     let first = shapes[a].first_point;
     var count = 0u;
     for (var c = 0u; c < 4u; c++) {

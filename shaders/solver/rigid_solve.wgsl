@@ -3,7 +3,7 @@
 // Sequential impulses with warm starting: overlaps are pushed out by soft springs, whose energy a second
 // set of rounds takes away again (Catto, "Solver2D", 2024), and grow no deeper, whatever drives them; gaps may close exactly; friction keeps to
 // Coulomb's cone; restitution comes last, from the speed of approach before any of it. Manifolds of
-// one colour share no body and run side by side.
+// one colour share no body and run side by side; those that found no colour follow one after another.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read_write> bodies: array<Body>;
@@ -20,6 +20,7 @@ var<immediate> substep: Substep;
 
 // Velocity; w: 1 / mass, 0 for what is held.
 var<workgroup> speed: array<vec4<f32>, RIGID_BODIES>;
+// w: 1 where gravity alone moves it, before contacts.
 var<workgroup> spin: array<vec4<f32>, RIGID_BODIES>;
 // Inverse of the inertia tensor, world frame: xx yy zz, xy xz yz.
 var<workgroup> ease_diagonal: array<vec4<f32>, RIGID_BODIES>;
@@ -176,7 +177,7 @@ fn bounce(m: u32) {
     }
 }
 
-// The first colour that neither body has yet; a manifold that finds none is left out.
+// The first colour that neither body has yet; RIGID_COLOURS where there is none.
 fn colour_all() -> u32 {
     var most = 0u;
     for (var m = 0u; m < arrayLength(&manifolds); m++) {
@@ -189,24 +190,15 @@ fn colour_all() -> u32 {
         if (b != NO_BODY) {
             used |= taken[b];
         }
-        var colour = 128u;
+        var colour = RIGID_COLOURS;
         for (var word = 0u; word < 4u; word++) {
             if (used[word] != 0xffffffffu) {
                 colour = 32u * word + firstTrailingBit(~used[word]);
                 break;
             }
         }
-        if (colour == 128u) {
-            manifolds[m].count = 0u;
-            continue;
-        }
         let bit = 1u << (colour & 31u);
-        let mask = vec4<u32>(
-            select(0u, bit, colour < 32u),
-            select(0u, bit, colour >= 32u && colour < 64u),
-            select(0u, bit, colour >= 64u && colour < 96u),
-            select(0u, bit, colour >= 96u),
-        );
+        let mask = select(vec4<u32>(0u), vec4<u32>(bit), vec4<u32>(colour >> 5u) == vec4<u32>(0u, 1u, 2u, 3u));
         taken[a] |= mask;
         if (b != NO_BODY) {
             taken[b] |= mask;
@@ -242,6 +234,8 @@ fn drive(b: u32) {
         momentum += given[2u * (shape.first_chunk + k)].xyz;
         turning += given[2u * (shape.first_chunk + k) + 1u].xyz;
     }
+    // What hangs on soft matter, or meets it, moves as it does: by the velocity at the end of the substep.
+    let alone = shape.bonded == 0u && all(momentum == vec3<f32>(0.0)) && all(turning == vec3<f32>(0.0));
     momentum += mass * take_driven(12u * b);
     turning += mass * shape.radius_m * take_driven(12u * b + 6u);
     let driven_v = body.velocity.xyz + momentum / mass + substep.dt_s * (params.gravity_m_s2 + objects[shape.object].xyz);
@@ -253,7 +247,7 @@ fn drive(b: u32) {
     body.angular_momentum *= followed;
     bodies[b].angular_momentum = body.angular_momentum;
     speed[b] = vec4<f32>(v, 1.0 / mass);
-    spin[b] = vec4<f32>(spin_of(shape.inverse, body.turn, body.angular_momentum.xyz), 0.0);
+    spin[b] = vec4<f32>(spin_of(shape.inverse, body.turn, body.angular_momentum.xyz), select(0.0, 1.0, alone));
     let r = rotation_of(body.turn);
     let columns = mat3x3<f32>(shape.inverse[0].xyz, shape.inverse[1].xyz, shape.inverse[2].xyz);
     let ease = r * columns * transpose(r);
@@ -291,7 +285,7 @@ fn advanced(q: vec4<f32>, omega: vec3<f32>, dt_s: f32) -> vec4<f32> {
 // that flies falls along its parabola. Orientation by the implicit midpoint, which keeps the energy of a
 // body that tumbles freely as well as its angular momentum.
 fn travel(b: u32) {
-    let flies = all(taken[b] == vec4<u32>(0u)) && speed[b].w != 0.0;
+    let flies = all(taken[b] == vec4<u32>(0u)) && spin[b].w != 0.0;
     let acceleration = params.gravity_m_s2 + objects[shapes[b].object].xyz;
     let late = select(vec3<f32>(0.0), 0.5 * substep.dt_s * acceleration, flies);
     let low = bodies[b].low.xyz + (speed[b].xyz - late) * substep.dt_s;
@@ -330,10 +324,37 @@ fn settle(b: u32) {
     bodies[b].angular_momentum = vec4<f32>(kept + turned(q, tensor(shapes[b].inertia, turned_back(q, change))), 0.0);
 }
 
+// What a sweep does.
+const START_WARM: u32 = 0u;
+const SOLVE_BIASED: u32 = 1u;
+const SOLVE_CALM: u32 = 2u;
+const BOUNCES: u32 = 3u;
+
+// All manifolds once, colour after colour.
+fn sweep(act: u32, last: u32, lane: u32, spring: vec3<f32>) {
+    let slots = arrayLength(&manifolds);
+    for (var colour = 0u; colour < last; colour++) {
+        let alone = colour == RIGID_COLOURS;
+        let step = select(RIGID_LANES, 1u, alone);
+        for (var m = select(lane, slots * lane, alone); m < slots; m += step) {
+            if (manifolds[m].count == 0u || manifolds[m].colour != colour) {
+                continue;
+            }
+            if (act == START_WARM) {
+                start_warm(m);
+            } else if (act == BOUNCES) {
+                bounce(m);
+            } else {
+                solve(m, act == SOLVE_BIASED, spring);
+            }
+        }
+        workgroupBarrier();
+    }
+}
+
 @compute @workgroup_size(RIGID_LANES)
 fn main(@builtin(local_invocation_index) lane: u32) {
     let count = arrayLength(&bodies);
-    let slots = arrayLength(&manifolds);
     for (var b = lane; b < count; b += RIGID_LANES) {
         taken[b] = vec4<u32>(0u);
         drive(b);
@@ -344,51 +365,23 @@ fn main(@builtin(local_invocation_index) lane: u32) {
     }
     let last = workgroupUniformLoad(&colours);
     storageBarrier();
-    for (var m = lane; m < slots; m += RIGID_LANES) {
+    for (var m = lane; m < arrayLength(&manifolds); m += RIGID_LANES) {
         prepare(m);
     }
     workgroupBarrier();
-    for (var colour = 0u; colour < last; colour++) {
-        for (var m = lane; m < slots; m += RIGID_LANES) {
-            if (manifolds[m].count > 0u && manifolds[m].colour == colour) {
-                start_warm(m);
-            }
-        }
-        workgroupBarrier();
-    }
     let spring = soft();
+    sweep(START_WARM, last, lane, spring);
     for (var round = 0u; round < RIGID_ROUNDS; round++) {
-        for (var colour = 0u; colour < last; colour++) {
-            for (var m = lane; m < slots; m += RIGID_LANES) {
-                if (manifolds[m].count > 0u && manifolds[m].colour == colour) {
-                    solve(m, true, spring);
-                }
-            }
-            workgroupBarrier();
-        }
+        sweep(SOLVE_BIASED, last, lane, spring);
     }
     for (var b = lane; b < count; b += RIGID_LANES) {
         travel(b);
     }
     workgroupBarrier();
     for (var round = 0u; round < RIGID_CALM_ROUNDS; round++) {
-        for (var colour = 0u; colour < last; colour++) {
-            for (var m = lane; m < slots; m += RIGID_LANES) {
-                if (manifolds[m].count > 0u && manifolds[m].colour == colour) {
-                    solve(m, false, spring);
-                }
-            }
-            workgroupBarrier();
-        }
+        sweep(SOLVE_CALM, last, lane, spring);
     }
-    for (var colour = 0u; colour < last; colour++) {
-        for (var m = lane; m < slots; m += RIGID_LANES) {
-            if (manifolds[m].count > 0u && manifolds[m].colour == colour) {
-                bounce(m);
-            }
-        }
-        workgroupBarrier();
-    }
+    sweep(BOUNCES, last, lane, spring);
     for (var b = lane; b < count; b += RIGID_LANES) {
         settle(b);
     }

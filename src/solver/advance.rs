@@ -226,6 +226,7 @@ impl Solver {
         if now.peak_speed_m_s >= 0.999 * self.params.speed_most {
             report.held_m_s = self.params.speed_most;
         }
+        report.unmet |= now.unmet;
     }
 
     /// The fastest that anything is followed, but for pins.

@@ -200,12 +200,14 @@ pub const RIGID_LANES: u32 = 64;
 pub const RIGID_POINTS: u32 = 512;
 /// Coefficients of all bodies' distance fields together.
 pub const RIGID_FIELD: u32 = 4_000_000;
-/// Other things that a body's points meet at one time, at most.
+/// Other things that a body's points meet at one time, at most: of more that touch it the deepest.
 pub const RIGID_SLOTS: u32 = 12;
 /// Contacts that a body had in the substep before, at most: four a slot.
 pub const RIGID_OLD: u32 = 4 * RIGID_SLOTS;
-/// Steps in which a surface point slides to where it is nearest.
+/// Steps in which a surface point slides to where it is nearest, at most.
 pub const RIGID_SLIDES: u32 = 4;
+/// Colours of manifolds that share no body. What finds none is solved one after another.
+pub const RIGID_COLOURS: u32 = 128;
 /// Rounds of impulses before positions move.
 pub const RIGID_ROUNDS: u32 = 8;
 /// And after, without the push that takes overlaps apart.
@@ -349,6 +351,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("RIGID_SLOTS", Constant::U32(RIGID_SLOTS)),
         ("RIGID_OLD", Constant::U32(RIGID_OLD)),
         ("RIGID_SLIDES", Constant::U32(RIGID_SLIDES)),
+        ("RIGID_COLOURS", Constant::U32(RIGID_COLOURS)),
         ("RIGID_ROUNDS", Constant::U32(RIGID_ROUNDS)),
         ("RIGID_CALM_ROUNDS", Constant::U32(RIGID_CALM_ROUNDS)),
         ("RIGID_HERTZ", Constant::F32(RIGID_HERTZ)),

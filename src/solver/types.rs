@@ -268,6 +268,8 @@ pub struct Advance {
     pub undefined: Vec<(String, u64)>,
     /// How often a field would have brought a particle beyond 200 m/s, where it was held.
     pub limited: u64,
+    /// Whether a rigid body touched more things at one time than the dozen that are followed from its side: the deepest counted.
+    pub unmet: bool,
 }
 
 /// How far the search for the captured pose's prestress came.

@@ -21,6 +21,7 @@ pub(super) struct Control {
     wave_speed: u32,
     crowded: u32,
     blocks: u32,
+    unmet: u32,
 }
 
 impl Control {
@@ -40,6 +41,7 @@ impl Control {
         wave_speed: 0,
         crowded: 0,
         blocks: 0,
+        unmet: 0,
     };
 
     pub fn watch(&self) -> Watch {
@@ -53,6 +55,7 @@ impl Control {
             window: self.window != 0,
             crowded: self.crowded != 0,
             blocks: self.blocks as usize,
+            unmet: self.unmet != 0,
             nonfinite: self.nonfinite,
             j_low: value(self.j_low),
             j_high: value(self.j_high),
@@ -87,6 +90,8 @@ pub(super) struct Watch {
     pub crowded: bool,
     /// Most blocks of the grid that any sort of the segment asked for.
     pub blocks: usize,
+    /// A rigid body touched more things than it has slots for.
+    pub unmet: bool,
     pub nonfinite: u32,
     pub j_low: f32,
     pub j_high: f32,

@@ -88,9 +88,9 @@ pub(super) fn run(
     let made = [("scene", ready.keys.scene.as_str()), ("proxy", &ready.keys.proxy), ("bind", &ready.keys.bind), ("picture", &ready.picture)];
     engine.store.pin("head", made.into_iter().chain(motion).filter(|(stage, key)| engine.store.contains(stage, key)))?;
     warnings.extend(done.totals.said.iter().cloned());
-    let of_forces = summary::of_forces(&done.totals);
-    of_forces.iter().for_each(|w| sink.warning(w));
-    warnings.extend(of_forces);
+    let of_solver: Vec<String> = summary::of_forces(&done.totals).into_iter().chain(summary::of_contacts(&done.totals)).collect();
+    of_solver.iter().for_each(|w| sink.warning(w));
+    warnings.extend(of_solver);
     summary::of_impacts(spec, &done.totals, ready.resolved.cell_m, done.stopped).iter().for_each(|n| sink.note(n));
     // Whoever gave a stiffness hears what it was simulated with.
     done.totals.softened.iter().for_each(|text| sink.warning(text));

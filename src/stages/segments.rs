@@ -71,6 +71,9 @@ pub(super) struct SolverTotals {
     /// The speed at which something was held, the fastest that substeps follow; 0 where nothing was.
     #[serde(default)]
     pub held_m_s: f64,
+    /// Whether a rigid body touched more things than are followed.
+    #[serde(default)]
+    pub unmet: bool,
     /// How often a force was held at the speed that forces end at.
     #[serde(default)]
     pub limited: u64,
@@ -92,6 +95,7 @@ impl SolverTotals {
         self.nonfinite = later.nonfinite.max(self.nonfinite);
         self.seconds += later.seconds;
         self.limited += later.limited;
+        self.unmet |= later.unmet;
         self.held_m_s = self.held_m_s.max(later.held_m_s);
         self.fired.extend_from_slice(&later.fired);
         for (name, times) in &later.undefined {

@@ -40,6 +40,7 @@ pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
         undefined: advance.undefined.iter().cloned().collect(),
         limited: advance.limited,
         held_m_s: f64::from(advance.held_m_s),
+        unmet: advance.unmet,
         ..SolverTotals::default()
     }
 }
@@ -59,6 +60,12 @@ pub(super) fn of_forces(totals: &SolverTotals) -> Vec<String> {
         )
     });
     undefined.chain(limited).chain(held).collect()
+}
+
+/// What contacts were left out, in words.
+pub(super) fn of_contacts(totals: &SolverTotals) -> Option<String> {
+    let text = "a rigid body touched more than a dozen things at one time: on its side the dozen that pressed deepest counted";
+    totals.unmet.then(|| text.to_owned())
 }
 
 /// When what waited for an impact came about, in words.

@@ -37,7 +37,7 @@ passes! {
     /// The passes of rigid bodies.
     RigidPasses;
     rigid_hold: ["control", "substep", "contact", "pin", "rigid", "rigid_hold"] [Read, Read, Write, Read, Read, Write] SUBSTEP;
-    rigid_contacts: ["substep", "contact", "rigid", "rigid_field", "rigid_contacts"] [Read, Read, Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
+    rigid_contacts: ["control", "substep", "contact", "rigid", "rigid_field", "rigid_contacts"] [Read, Read, Read, Read, Read, Read, Write, Write, Write, Write] SUBSTEP;
     rigid_driven: ["particle", "rigid", "rigid_driven"] [Read, Read, Read, Read, Read, Read, Write] 0;
     rigid_solve: ["substep", "rigid", "rigid_solve"] [Read, Write, Read, Write, Write, Read, Read, Write] SUBSTEP;
     rigid_place: ["control", "substep", "particle", "particle_write", "rigid", "rigid_place"] [Read, Write, Write, Read, Read, Read, Write] SUBSTEP;
@@ -160,7 +160,7 @@ impl Rigid {
             hold: gpu.bind(&p.rigid_hold, &[params, &solver.pins_buffer, bodies, shapes, &self.points, &solver.control]),
             contacts: gpu.bind(
                 &p.rigid_contacts,
-                &[params, &solver.colliders_buffer, bodies, shapes, &self.points, &self.field, manifolds, contacts, &self.scratch],
+                &[params, &solver.colliders_buffer, bodies, shapes, &self.points, &self.field, manifolds, contacts, &self.scratch, &solver.control],
             ),
             solve: gpu.bind(&p.rigid_solve, &[params, bodies, shapes, manifolds, contacts, &solver.objects_buffer, &self.given, &self.driven]),
             place: gpu.bind(&p.rigid_place, &[params, &state.kinematics, &state.matter, bodies, shapes, &self.anchors, &solver.control]),

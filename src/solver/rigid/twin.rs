@@ -129,12 +129,23 @@ impl World<'_> {
                 .collect();
             let mut old: Vec<_> = old.into_iter().map(Some).collect();
             let others = (0..self.colliders.len() + bodies.len()).filter(|&o| o != self.colliders.len() + a && self.within_reach(bodies, a, o));
-            let met: Vec<usize> = others.take(SLOTS).collect();
-            for k in 0..SLOTS {
-                let slot = a * SLOTS + k;
-                manifolds[slot].count = 0;
-                let Some(&other) = met.get(k) else { continue };
+            manifolds[a * SLOTS..][..SLOTS].iter_mut().for_each(|m| m.count = 0);
+            let mut gaps_m: Vec<f32> = Vec::new();
+            for other in others {
                 let chosen = self.chosen(bodies, a, other);
+                let Some(gap_m) = chosen.first().map(|f| f.gap_m) else { continue };
+                let slot = if gaps_m.len() < SLOTS {
+                    gaps_m.push(gap_m);
+                    gaps_m.len() - 1
+                } else {
+                    let farthest = (0..SLOTS).rev().max_by(|&i, &j| gaps_m[i].total_cmp(&gaps_m[j])).unwrap();
+                    if gap_m >= gaps_m[farthest] {
+                        continue;
+                    }
+                    gaps_m[farthest] = gap_m;
+                    farthest
+                };
+                let slot = a * SLOTS + slot;
                 for (c, found) in chosen.iter().enumerate() {
                     contacts[4 * slot + c] = self.contact(bodies, a, other, found, &mut old);
                 }
@@ -226,7 +237,7 @@ struct Moving {
     ease: Mat3,
     kept: Vec3,
     old_turn: Quat,
-    /// Without a contact.
+    /// Gravity alone moves it.
     flies: bool,
 }
 
@@ -398,7 +409,7 @@ impl World<'_> {
             ease: r * shape.inverse() * r.transpose(),
             kept,
             old_turn: q,
-            flies: true,
+            flies: shape.bonded == 0 && *given == (Vec3::ZERO, Vec3::ZERO),
         }
     }
 
@@ -432,8 +443,9 @@ impl World<'_> {
             let other = (manifold.other as usize).checked_sub(self.colliders.len());
             let used = taken[m / SLOTS] | other.map_or(0, |b| taken[b]);
             let colour = used.trailing_ones();
-            taken[m / SLOTS] |= 1 << colour;
-            other.into_iter().for_each(|b| taken[b] |= 1 << colour);
+            let bit = 1u128.checked_shl(colour).unwrap_or(0);
+            taken[m / SLOTS] |= bit;
+            other.into_iter().for_each(|b| taken[b] |= bit);
             colours.push((colour, m));
         }
         colours

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod change;
+mod crowds;
 mod soft;
 mod twins;
 

@@ -30,6 +30,20 @@ fn a_half_rigid_body_spins_freely_with_all_it_has() {
 }
 
 #[test]
+fn a_half_rigid_body_falls_as_one() {
+    let particles = with_rigid_part(block(Vec3::splat(-0.05), Vec3::new(0.3, 0.1, 0.1), 0.025, 5e5, 0.3), |p| p.x > 0.1);
+    let mut solver = solver(Settings { gravity_m_s2: Vec3::new(0.0, 0.0, -9.81), ..floating() }, &particles);
+    let apart = |solver: &crate::solver::Solver| {
+        let states = solver.states().expect("states");
+        let soft: Vec<f32> = states.iter().filter(|s| !s.is_rigid()).map(|s| s.position_m.z).collect();
+        centre(&bodies_of(solver)[0]).z - soft.iter().sum::<f32>() / soft.len() as f32
+    };
+    let start_m = apart(&solver);
+    advance(&mut solver, 0.4);
+    assert!((apart(&solver) - start_m).abs() < 5e-5, "they parted by {} m", apart(&solver) - start_m);
+}
+
+#[test]
 fn what_a_pin_sets_off_at_once_fits_the_first_sums() {
     // All is at rest, and the foot goes off at a metre a second: a thousand times what the scale is made for at least.
     let size = Vec3::new(0.1, 0.1, 0.3);
