@@ -11,9 +11,9 @@
 var<workgroup> momentum: array<vec4<f32>, RIGID_LANES>;
 var<workgroup> angular: array<vec4<f32>, RIGID_LANES>;
 
-fn take(lane: u32, node: u32, weighted_kg: f32, r: vec3<f32>) {
+fn take(lane: u32, b: u32, node: u32, weighted_kg: f32, r: vec3<f32>) {
     let rigid_kg = meetings[node].rigid_kg;
-    if (rigid_kg > 0.0) {
+    if (rigid_kg > 0.0 && (meetings[node].body & (SLIDES - 1u)) == b) {
         let impulse = meetings[node].impulse * (weighted_kg / rigid_kg);
         momentum[lane] += vec4<f32>(impulse, 0.0);
         angular[lane] += vec4<f32>(cross(r, impulse), 0.0);
@@ -36,9 +36,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         for (var k = 0u; k < 9u; k++) {
             let r = row(s, k);
             let d = arm + params.cell_m * vec3<f32>(-s.place.x, r.dy, r.dz);
-            take(lane, r.nodes.x, member.w * r.weights.x, d);
-            take(lane, r.nodes.y, member.w * r.weights.y, d + vec3<f32>(params.cell_m, 0.0, 0.0));
-            take(lane, r.nodes.z, member.w * r.weights.z, d + vec3<f32>(2.0 * params.cell_m, 0.0, 0.0));
+            take(lane, b, r.nodes.x, member.w * r.weights.x, d);
+            take(lane, b, r.nodes.y, member.w * r.weights.y, d + vec3<f32>(params.cell_m, 0.0, 0.0));
+            take(lane, b, r.nodes.z, member.w * r.weights.z, d + vec3<f32>(2.0 * params.cell_m, 0.0, 0.0));
         }
     }
     workgroupBarrier();

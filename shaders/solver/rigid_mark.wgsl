@@ -12,10 +12,10 @@
 
 fn mark(node: u32, contact: u32, bond: u32, beside: bool) {
     if (contact != 0u && beside) {
-        atomicMax(&nears[3u * node + 1u], contact);
+        atomicMax(&nears[4u * node + 2u], contact);
     }
     if (bond != 0u) {
-        atomicMax(&nears[3u * node + 2u], bond);
+        atomicMax(&nears[4u * node + 3u], bond);
     }
 }
 

@@ -5,8 +5,10 @@
 
 // What particles leave at a node before the exchange.
 struct Near {
-    // Fixed-point mass of the bodies' particles.
-    rigid: u32,
+    // Fixed-point mass of the particles of the body that soft matter hangs on, and of the one that it touches:
+    // another body near by, which it does neither to, has no part in it.
+    bonded: u32,
+    touched: u32,
     // Contact of the nearest soft particle: nearness above the body's number.
     contact: u32,
     // The body that soft particles of its own object hang on, plus one.
@@ -20,7 +22,7 @@ struct Meeting {
     allowed_m_s: f32,
     // Given to the body, kg m/s.
     impulse: vec3<f32>,
-    // Mass of the bodies' particles at the node; 0 where nothing meets.
+    // Mass of the body's particles at the node; 0 where nothing meets.
     rigid_kg: f32,
     momentum: vec3<f32>,
     soft_kg: f32,

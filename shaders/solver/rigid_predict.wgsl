@@ -15,9 +15,9 @@ var<workgroup> sums1: array<vec4<f32>, RIGID_LANES>;
 var<workgroup> sums2: array<vec4<f32>, RIGID_LANES>;
 var<workgroup> sums3: array<vec4<f32>, RIGID_LANES>;
 
-fn burden(lane: u32, node: u32, weighted_kg: f32, r: vec3<f32>) {
+fn burden(lane: u32, b: u32, node: u32, weighted_kg: f32, r: vec3<f32>) {
     let rigid_kg = meetings[node].rigid_kg;
-    if (rigid_kg == 0.0) {
+    if (rigid_kg == 0.0 || (meetings[node].body & (SLIDES - 1u)) != b) {
         return;
     }
     let share = weighted_kg / rigid_kg;
@@ -48,9 +48,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         for (var k = 0u; k < 9u; k++) {
             let r = row(s, k);
             let d = arm + params.cell_m * vec3<f32>(-s.place.x, r.dy, r.dz);
-            burden(lane, r.nodes.x, member.w * r.weights.x, d);
-            burden(lane, r.nodes.y, member.w * r.weights.y, d + vec3<f32>(params.cell_m, 0.0, 0.0));
-            burden(lane, r.nodes.z, member.w * r.weights.z, d + vec3<f32>(2.0 * params.cell_m, 0.0, 0.0));
+            burden(lane, b, r.nodes.x, member.w * r.weights.x, d);
+            burden(lane, b, r.nodes.y, member.w * r.weights.y, d + vec3<f32>(params.cell_m, 0.0, 0.0));
+            burden(lane, b, r.nodes.z, member.w * r.weights.z, d + vec3<f32>(2.0 * params.cell_m, 0.0, 0.0));
         }
     }
     workgroupBarrier();

@@ -1,4 +1,4 @@
-// Bodies to grid: which nodes with soft matter each body's particles reach, and with what mass.
+// Bodies to grid: with what mass each body's particles reach the nodes that soft matter marked with it.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> bodies: array<Body>;
@@ -9,9 +9,17 @@
 @group(0) @binding(4) var<storage, read> sums: array<vec4<i32>>;
 @group(0) @binding(5) var<storage, read_write> nears: array<atomic<u32>>;
 
-fn leave(node: u32, mass: f32) {
-    if (sums[node].w > 0) {
-        atomicAdd(&nears[3u * node], u32(mass + 0.5));
+fn leave(b: u32, node: u32, mass: f32) {
+    if (sums[node].w <= 0) {
+        return;
+    }
+    let contact = atomicLoad(&nears[4u * node + 2u]);
+    let bond = atomicLoad(&nears[4u * node + 3u]);
+    if (bond == b + 1u) {
+        atomicAdd(&nears[4u * node], u32(mass + 0.5));
+    }
+    if (contact != 0u && (contact & (SLIDES - 1u)) == b) {
+        atomicAdd(&nears[4u * node + 1u], u32(mass + 0.5));
     }
 }
 
@@ -30,9 +38,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         let s = in_layer(stencil(x, base, vec3<u32>(first)), layer);
         for (var k = 0u; k < 9u; k++) {
             let r = row(s, k);
-            leave(r.nodes.x, r.weights.x * mass_units);
-            leave(r.nodes.y, r.weights.y * mass_units);
-            leave(r.nodes.z, r.weights.z * mass_units);
+            leave(b, r.nodes.x, r.weights.x * mass_units);
+            leave(b, r.nodes.y, r.weights.y * mass_units);
+            leave(b, r.nodes.z, r.weights.z * mass_units);
         }
     }
 }

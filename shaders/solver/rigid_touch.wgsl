@@ -19,24 +19,24 @@ fn velocity_at(b: u32, x: vec3<f32>) -> vec3<f32> {
 fn settle(node: u32, x: vec3<f32>) {
     let near = nears[node];
     let sum = sums[node];
-    if ((near.rigid | near.contact | near.bond) != 0u) {
-        nears[node] = Near(0u, 0u, 0u);
+    if ((near.contact | near.bond) != 0u) {
+        nears[node] = Near(0u, 0u, 0u, 0u);
     }
     meetings[node].rigid_kg = 0.0;
-    if (near.rigid == 0u || sum.w <= 0 || (near.contact | near.bond) == 0u) {
+    if ((near.bonded | near.touched) == 0u || sum.w <= 0) {
         return;
     }
     let momentum_unit = momentum_units(substep.index, substep.lag);
     let soft_kg = f32(sum.w) / params.mass_units;
-    let rigid_kg = f32(near.rigid) / params.mass_units;
     let momentum = vec3<f32>(sum.xyz) / momentum_unit;
     // A node to which the body brings a good part of the mass moves with the body: these are the nodes up
     // to the joint. Fewer would leave the joint to the thin end of the soft particles' splines.
-    if (near.bond != 0u && near.rigid >= u32(sum.w) / 4u) {
+    if (near.bonded > 0u && near.bonded >= u32(sum.w) / 4u) {
+        let rigid_kg = f32(near.bonded) / params.mass_units;
         meetings[node] = Meeting(vec3<f32>(0.0), 0.0, vec3<f32>(0.0), rigid_kg, momentum, soft_kg, near.bond - 1u);
         return;
     }
-    if (near.contact == 0u) {
+    if (near.touched == 0u) {
         return;
     }
     let b = near.contact & (SLIDES - 1u);
@@ -46,6 +46,7 @@ fn settle(node: u32, x: vec3<f32>) {
     let gap_m = near_gap_m(near.contact);
     let allowed = select(-gap_m / substep.dt_s, min(-0.1 * gap_m / substep.dt_s, 10.0 * params.cell_m), gap_m < 0.0);
     if (dot(momentum / soft_kg - velocity_at(b, x), normal) < allowed) {
+        let rigid_kg = f32(near.touched) / params.mass_units;
         meetings[node] = Meeting(normal, allowed, vec3<f32>(0.0), rigid_kg, momentum, soft_kg, near.contact & 1023u);
     }
 }

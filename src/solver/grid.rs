@@ -77,7 +77,7 @@ pub(super) struct GridBuffers {
 }
 
 /// Words of `Near` of `shaders/solver/rigid_meeting.wgsl`.
-pub(super) type Near = [u32; 3];
+pub(super) type Near = [u32; 4];
 /// And of `Meeting`.
 pub(super) type Meeting = [f32; 16];
 

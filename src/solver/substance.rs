@@ -78,8 +78,9 @@ pub enum Substance {
         surface_tension_n_m: f32,
     },
     /// Keeps its shape. The particles of one object and one row are one body; rows of one object whose
-    /// particles touch are welded. Moduli are not used. Friction between two things is the root of the
-    /// product of theirs, restitution the larger of theirs.
+    /// particles touch are welded. Moduli are not used. Friction between two bodies, or a body and a collider, is
+    /// the root of the product of theirs, restitution the larger of theirs; soft matter, which is given none, has that of
+    /// whatever body or collider it lies on.
     Rigid {
         /// Coulomb coefficient.
         friction: f32,

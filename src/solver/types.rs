@@ -160,8 +160,8 @@ pub struct Settings {
     pub forces: Vec<ObjectForce>,
     /// What is driven by expressions.
     pub fields: Vec<Field>,
-    /// Coulomb coefficient of each object against others, by index; between two the root of the product of theirs
-    /// counts. Where the list ends, that of what the object is made of; a spec gives none.
+    /// Coulomb coefficient of each object against other soft ones, by index; between two the root of the product of theirs
+    /// counts, beside a body or a collider its alone. Where the list ends, that of what the object is made of; a spec gives none.
     pub(crate) frictions: Vec<f32>,
     /// Objects that touch stick together: what is one body, driven in parts, as only validation does. Else they meet with friction.
     pub(crate) glued: bool,

@@ -17,7 +17,7 @@ use crate::solver::types::SolverError;
 passes! {
     /// The passes of rigid bodies among soft matter.
     MeetingPasses;
-    rigid_share: ["rigid", "rigid_share"] [Read, Read, Read, Read, Read, Write] 0;
+    rigid_share: ["rigid", "rigid_meeting", "rigid_share"] [Read, Read, Read, Read, Read, Write] 0;
     rigid_mark: ["substance", "particle", "on_grid", "rigid", "rigid_field", "rigid_meeting", "rigid_mark"] [Read, Read, Read, Read, Read, Read, Write, Read] 0;
     rigid_touch: ["control", "substep", "rigid", "rigid_field", "node", "rigid_meeting", "rigid_touch"] [Read, Read, Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
     rigid_predict: ["rigid", "rigid_meeting", "rigid_predict"] [Read, Read, Read, Read, Read, Write] 0;
@@ -89,8 +89,8 @@ impl Meeting {
     /// Adds the exchange of one substep, between p2g and the grid.
     pub fn record(&self, b: &MeetingBound, substep: &Substep, particle_groups: [u32; 3], recording: &mut Recording) {
         let (p, chunks) = (&self.passes, [self.chunks, 1, 1]);
-        recording.dispatch(&p.rigid_share, &b.share, chunks);
         recording.dispatch(&p.rigid_mark, &b.mark, particle_groups);
+        recording.dispatch(&p.rigid_share, &b.share, chunks);
         recording.indirect_with(&p.rigid_touch, &b.touch, substep, &b.active_groups, 0);
         recording.dispatch(&p.rigid_predict, &b.predict, chunks);
         recording.dispatch(&p.rigid_meet, &b.meet, [1, 1, 1]);

@@ -3,7 +3,7 @@
 use super::{Settings, advance, bodies_of, centre, floating, incline, solver, velocity};
 use crate::Stop;
 use crate::solver::substance::Substance;
-use crate::solver::validate::{block, joined, momenta, rigid_body as rigid};
+use crate::solver::validate::{ball, block, joined, momenta, rigid_body as rigid};
 use crate::solver::{Particles, PinRegion};
 use crate::spec::{BoxShape, ColliderShape};
 use glam::Vec3;
@@ -41,6 +41,21 @@ fn a_half_rigid_body_falls_as_one() {
     let start_m = apart(&solver);
     advance(&mut solver, 0.4);
     assert!((apart(&solver) - start_m).abs() < 5e-5, "they parted by {} m", apart(&solver) - start_m);
+}
+
+#[test]
+fn what_pulls_at_a_joint_leaves_a_ball_beside_it_alone() {
+    // The ball is a cell away from the soft part, and its particles reach the joint's nodes.
+    let mut particles = with_rigid_part(block(Vec3::splat(-0.05), Vec3::new(0.3, 0.1, 0.1), 0.025, 5e5, 0.3), |p| p.x > 0.1);
+    let soft = |p: &Vec3| p.x < 0.1;
+    particles.velocity_m_s = particles.position_m.iter().map(|p| if soft(p) { Vec3::NEG_X } else { Vec3::ZERO }).collect();
+    let mut steel = rigid(ball(Vec3::new(0.1, 0.137, 0.0), 0.03, 0.0125), 0.4, 0.0);
+    steel.density_kg_m3.fill(7850.0);
+    let mut solver = solver(floating(), &joined(particles, steel));
+    advance(&mut solver, 0.02);
+    let [foot, steel] = bodies_of(&solver)[..] else { unreachable!() };
+    assert!(velocity(&foot).x < -0.05, "the joint pulls: {}", velocity(&foot));
+    assert_eq!(velocity(&steel), Vec3::ZERO);
 }
 
 #[test]

@@ -13,7 +13,9 @@ use std::collections::BTreeMap;
 /// What particles leave at a node.
 #[derive(Clone, Copy, Debug, Default)]
 struct Near {
-    rigid_kg: f64,
+    /// Of the body that it hangs on, and of the one that it touches.
+    bonded_kg: f64,
+    touched_kg: f64,
     /// Gap and body of the nearest soft particle, and whether it slides.
     contact: Option<(f32, usize, bool)>,
     bond: Option<usize>,
@@ -64,16 +66,17 @@ impl World<'_> {
     /// `rigid_share.wgsl` and `rigid_mark.wgsl`.
     fn nears(&self, bodies: &[Body], states: &[ParticleState], grid: &Grid, params: &Params) -> Nodes {
         let mut nears = Nodes::new();
-        for (k, member) in self.all.members.iter().enumerate().filter(|(_, m)| m[3] > 0.0) {
-            let body = &bodies[self.all.owners[k / RIGID_LANES as usize] as usize];
-            for (node, weight, _) in twin::stencil(xyz(&body.centre_m) + turn(body) * xyz(member), params) {
-                if grid.contains_key(&node) {
-                    nears.entry(node).or_default().rigid_kg += f64::from(weight * member[3]);
-                }
-            }
-        }
         for s in states.iter().filter(|s| !s.is_rigid()) {
             self.mark(bodies, s, &mut nears, params);
+        }
+        for (k, member) in self.all.members.iter().enumerate().filter(|(_, m)| m[3] > 0.0) {
+            let b = self.all.owners[k / RIGID_LANES as usize] as usize;
+            for (node, weight, _) in twin::stencil(xyz(&bodies[b].centre_m) + turn(&bodies[b]) * xyz(member), params) {
+                let Some(near) = nears.get_mut(&node).filter(|_| grid.contains_key(&node)) else { continue };
+                let kg = f64::from(weight * member[3]);
+                near.bonded_kg += if near.bond == Some(b) { kg } else { 0.0 };
+                near.touched_kg += if near.contact.is_some_and(|c| c.1 == b) { kg } else { 0.0 };
+            }
         }
         nears
     }
@@ -106,13 +109,12 @@ impl World<'_> {
     /// `rigid_touch.wgsl`.
     fn meetings(&self, bodies: &[Body], nears: &Nodes, grid: &Grid, params: &Params) -> BTreeMap<[i32; 3], Meeting> {
         let mut meetings = BTreeMap::new();
-        for (node, near) in nears.iter().filter(|(_, n)| n.rigid_kg > 0.0) {
+        for (node, near) in nears {
             let Some(soft) = grid.get(node) else { continue };
-            let meeting =
-                |body, normal, allowed_m_s, slides| Meeting { body, normal, slides, allowed_m_s, rigid_kg: near.rigid_kg, impulse: DVec3::ZERO };
-            if let Some(b) = near.bond.filter(|_| near.rigid_kg >= 0.25 * soft.mass) {
-                meetings.insert(*node, meeting(b, Vec3::ZERO, 0.0, false));
-            } else if let Some((gap_m, b, slides)) = near.contact {
+            let meeting = |body, rigid_kg, normal, allowed_m_s, slides| Meeting { body, normal, slides, allowed_m_s, rigid_kg, impulse: DVec3::ZERO };
+            if let Some(b) = near.bond.filter(|_| near.bonded_kg > 0.0 && near.bonded_kg >= 0.25 * soft.mass) {
+                meetings.insert(*node, meeting(b, near.bonded_kg, Vec3::ZERO, 0.0, false));
+            } else if let Some((gap_m, b, slides)) = near.contact.filter(|_| near.touched_kg > 0.0) {
                 let gap_m = gap_m.max(-params.reach_m);
                 let x = place_of(node, params);
                 let body = &bodies[b];
@@ -122,7 +124,7 @@ impl World<'_> {
                 let arm = x - xyz(&body.centre_m);
                 let own = xyz(&body.velocity_m_s) + spin_of(&self.all.shapes[b], turn(body), xyz(&body.angular_momentum)).cross(arm);
                 if ((soft.momentum / soft.mass).as_vec3() - own).dot(normal) < allowed {
-                    meetings.insert(*node, meeting(b, normal, allowed, slides));
+                    meetings.insert(*node, meeting(b, near.touched_kg, normal, allowed, slides));
                 }
             }
         }
@@ -141,7 +143,7 @@ impl World<'_> {
             let b = self.all.owners[k / RIGID_LANES as usize] as usize;
             let x = xyz(&bodies[b].centre_m) + turn(&bodies[b]) * xyz(member);
             for (node, weight, _) in twin::stencil(x, params) {
-                if let Some(meeting) = meetings.get(&node) {
+                if let Some(meeting) = meetings.get(&node).filter(|m| m.body == b) {
                     let arm = (place_of(&node, params) - xyz(&bodies[b].centre_m)).as_dvec3();
                     act(b, f64::from(weight * member[3]) / meeting.rigid_kg, &node, meeting, arm);
                 }
