@@ -40,6 +40,8 @@ long_cases! {
     v19_sloshing: "V19 sloshing";
     v21_swinging_drop: "V21";
     a_drop_of_smoothed_particles_swings: "V21 SPH";
+    liquids_spread_as_their_viscosity_and_tension_say: "spread";
+    smoothed_particles_spread_so_too: "spread SPH";
     cubes_float_as_archimedes_says: "V23";
     a_cube_floats_on_particles_too: "V23 SPH";
     a_stack_of_ten_stands: "stack";

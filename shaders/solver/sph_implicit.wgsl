@@ -74,7 +74,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let omega = select(2.0 * sigma * shrink * (1.0 + pow(shrink, 2.0 * k)) / (1.0 + pow(shrink, 2.0 * k + 2.0)), 1.0, substep.job == 0u);
     let v = present[i];
     let step = (wanted[i].xyz - v.xyz - braking(i, list, v)) / middle;
-    // The first iterate is what is wanted.
-    let before = select(next[i].xyz, wanted[i].xyz, substep.job <= 1u);
+    let before = select(next[i].xyz, v.xyz, substep.job == 0u);
     next[i] = vec4<f32>(before + omega * (v.xyz + step - before), v.w);
 }

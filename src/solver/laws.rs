@@ -94,7 +94,7 @@ impl Solver {
         if self.sph.is_none() && substances.iter().any(Substance::is_sph) {
             let (sph, kept) = Sph::new(&self.gpu, self.params.count as usize)?;
             self.sph = Some(sph);
-            self.kept.push(kept);
+            self.kept.extend(kept);
         }
         if !substances.iter().any(|s| s.shown_stretch().is_some()) {
             self.laws.shown = None;

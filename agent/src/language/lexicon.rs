@@ -237,7 +237,7 @@ pub const SECTIONS: &[Section] = &[
             Sense::Material("glass") => "glass|porcelain|ceramic|china",
             Sense::Material("plastic") => "plastic",
             Sense::Material("rigid") => "rigid|solid",
-            Sense::Smoothed(true) => "as particles|by particles|of particles|with particles|as smoothed particles|by smoothed particles|of smoothed particles|use sph|using sph|with sph|by sph|as sph|sph",
+            Sense::Smoothed(true) => "as particles|by particles|of particles|with particles|in particles|made of particles|smoothed particle|smoothed particles|as smoothed particles|by smoothed particles|of smoothed particles|smoothed particle hydrodynamics|particle solver|use sph|using sph|with sph|by sph|as sph|sph",
             Sense::Smoothed(false) => "on the grid|on a grid|use mpm|using mpm|with mpm|by mpm|as mpm|mpm",
             Sense::Material("cloth-like") => "cloth|cloth like|clothlike|fabric|textile|a cloth",
         },

@@ -33,9 +33,9 @@ const COLUMNS: u32 = 16;
 const COLUMNS_MOST: u32 = 256;
 /// Rounds at most. What is left after them is the next substep's to correct.
 const ROUNDS: u32 = 24;
-/// A substep takes what is fastest so many times farther than cfl spacings: half of one. A dam breaks alike from 0.4 to 0.8; at
-/// 0.6 a million particles that meet the ground at once fly apart.
-const SPEED_SHARE: f64 = 1.25;
+/// A substep takes what is fastest so many times farther than cfl spacings: 0.64 of one. A dam breaks alike from 0.4 to 0.8, and
+/// a million particles that meet the ground at once spread alike from 0.5 to 0.8.
+const SPEED_SHARE: f64 = 1.6;
 /// A substep in free fall from rest moves a particle by half the square of this, in spacings.
 const FALL_SHARE: f64 = 0.15;
 /// Share of the period of the shortest capillary wave, times 1 / sqrt(2 pi): half of what a continuous surface
@@ -54,7 +54,7 @@ pub(super) struct Solve {
 }
 
 /// The smoothed particles' part of a solver. Buffers are in the order of the sort and live within a
-/// substep; only pressures are kept from one to the next.
+/// substep; only pressures, and what viscosity did, are kept from one to the next.
 #[derive(Debug)]
 pub(super) struct Sph {
     pub passes: SphPasses,
@@ -86,6 +86,8 @@ pub(super) struct Sph {
     pub errors: wgpu::Buffer,
     /// Pressures by the particles' original order.
     kept: wgpu::Buffer,
+    /// What implicit viscosity accelerated each by in the last substep, in that order.
+    braking: wgpu::Buffer,
 }
 
 /// Everything bound, for one of the two state buffers.
@@ -94,8 +96,9 @@ pub(super) struct SphBound {
     pub near: wgpu::BindGroup,
     pub skin: wgpu::BindGroup,
     pub forces: wgpu::BindGroup,
-    /// First, odd and even rounds.
-    pub implicit: [wgpu::BindGroup; 3],
+    pub foresee: wgpu::BindGroup,
+    /// Even and odd rounds.
+    pub implicit: [wgpu::BindGroup; 2],
     pub settle: wgpu::BindGroup,
     /// Even and odd rounds.
     pub press: [wgpu::BindGroup; 2],
@@ -104,11 +107,12 @@ pub(super) struct SphBound {
 }
 
 impl Sph {
-    /// For so many particles, of which [`Solver::survey`] tells what they are; and the pressures that are part
-    /// of the state.
-    pub fn new(gpu: &Gpu, n: usize) -> Result<(Sph, Kept), SolverError> {
+    /// For so many particles, of which [`Solver::survey`] tells what they are; and what of it is part of the state, the
+    /// pressures last.
+    pub fn new(gpu: &Gpu, n: usize) -> Result<(Sph, [Kept; 2]), SolverError> {
         let vectors = |name: &str| gpu.storage::<[f32; 4]>(&format!("solver.sph_{name}"), n);
         let kept = Kept::new(gpu, "solver.sph_kept", &vec![0f32; n])?;
+        let braking = Kept::new(gpu, "solver.sph_braking", &vec![[0f32; 4]; n])?;
         let turns = |name: &str| gpu.storage::<[u32; 4]>(name, super::constants::SPH_SLOTS as usize);
         let sph = Sph {
             passes: SphPasses::new(gpu),
@@ -137,8 +141,9 @@ impl Sph {
             reached: gpu.storage::<f32>("solver.sph_reached", n)?,
             errors: gpu.storage::<u32>("solver.sph_errors", super::constants::SPH_SLOTS as usize)?,
             kept: kept.live.clone(),
+            braking: braking.live.clone(),
         };
-        Ok((sph, kept))
+        Ok((sph, [braking, kept]))
     }
 
     /// Sums up what the particles are.
@@ -213,8 +218,9 @@ impl Sph {
             near: gpu.bind(&p.sph_near, &[&cells[..], &lists, &found].concat()),
             skin: gpu.bind(&p.sph_skin, &[&[params, &self.solve], &tight[..]].concat()),
             forces: gpu.bind(&p.sph_forces, &[&around[..], &lists, &forced].concat()),
-            implicit: [implicit(&self.corrected, &self.motion), implicit(&self.motion, &self.slowed), implicit(&self.slowed, &self.motion)],
-            settle: gpu.bind(&p.sph_settle, &[params, &self.near, &self.slowed, &self.predicted, &self.corrected]),
+            foresee: gpu.bind(&p.sph_foresee, &[params, matter, &self.braking, &self.corrected, &self.slowed]),
+            implicit: [implicit(&self.slowed, &self.motion), implicit(&self.motion, &self.slowed)],
+            settle: gpu.bind(&p.sph_settle, &[params, &self.near, &self.slowed, &self.predicted, &self.corrected, matter, &self.braking]),
             press: [press(1), press(0)],
             correct: gpu.bind(&p.sph_correct, &[&[params, &self.solve, &self.place], &lists[..], &corrected].concat()),
             advance: gpu.bind(&p.sph_advance, &[&[params, &self.solve, &self.place, &self.nature], &lists[..], &pushed, &moved].concat()),
@@ -233,12 +239,12 @@ impl Sph {
         }
         let implicit = viscous_rounds > 0;
         recording.dispatch_with(&p.sph_forces, &b.forces, &job(u32::from(implicit)), groups);
-        for round in 0..viscous_rounds {
-            let bound = if round == 0 { &b.implicit[0] } else { &b.implicit[2 - (round % 2) as usize] };
-            recording.dispatch_with(&p.sph_implicit, bound, &job(round), groups);
-        }
         if implicit {
-            recording.dispatch(&p.sph_settle, &b.settle, groups);
+            recording.dispatch_with(&p.sph_foresee, &b.foresee, substep, groups);
+            for round in 0..viscous_rounds {
+                recording.dispatch_with(&p.sph_implicit, &b.implicit[(round % 2) as usize], &job(round), groups);
+            }
+            recording.dispatch_with(&p.sph_settle, &b.settle, substep, groups);
         }
         // The first half of the first round came with the forces.
         recording.dispatch_with(&p.sph_correct, &b.correct, &job(0), groups);

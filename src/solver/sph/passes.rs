@@ -12,6 +12,7 @@ passes! {
     sph_correct: ["substep", "sph", "sph_solve", "sph_list", "sph_correct"] [Read, Read, Read, Read, Read, Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
     sph_forces: ["substep", "contact", "sph", "sph_viscous", "sph_tension", "sph_solve", "sph_list", "sph_forces"] [Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Write, Write] SUBSTEP;
     sph_implicit: ["substep", "contact", "sph", "sph_viscous", "sph_solve", "sph_list", "sph_implicit"] [Read, Read, Read, Read, Read, Read, Read, Read, Read, Write, Write] SUBSTEP;
-    sph_settle: ["sph", "sph_settle"] [Read, Read, Read, Write, Write] 0;
+    sph_foresee: ["substep", "sph_foresee"] [Read, Read, Read, Read, Write] SUBSTEP;
+    sph_settle: ["substep", "sph", "sph_settle"] [Read, Read, Read, Write, Write, Read, Write] SUBSTEP;
     sph_advance: ["control", "substep", "contact", "particle", "particle_write", "sph", "sph_solve", "sph_list", "sph_push", "sph_advance"] [Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
 }

@@ -183,20 +183,28 @@ fn one_substep_pass_by_pass() {
         }
     }
     let (free, wanted) = (vectors(&read(&sph.predicted, n)), vectors(&read(&sph.corrected, n)));
+    let before: Vec<[f32; 4]> = (0..n).map(|i| [(i % 7) as f32 - 3.0, (i % 5) as f32, -1.0, 0.0]).collect();
+    let braking = &solver.kept[solver.kept.len() - 2].live;
+    gpu().upload(braking, &before);
+    run(&|r| r.dispatch_with(&p.sph_foresee, &b.foresee, &substep(0), groups));
+    let got = read(&sph.slowed, n);
+    for &i in &concerned {
+        close("foreseen", Vec3::from_slice(&got[i]), wanted[i] + Vec3::from_slice(&before[order[i]]).as_dvec3() * dt, 1e-6);
+    }
     run(&|r| {
         for round in 0..40 {
-            let bound = if round == 0 { &b.implicit[0] } else { &b.implicit[2 - (round % 2) as usize] };
-            r.dispatch_with(&p.sph_implicit, bound, &substep(round), groups);
+            r.dispatch_with(&p.sph_implicit, &b.implicit[(round % 2) as usize], &substep(round), groups);
         }
     });
     let (got, slowed) = (read(&sph.slowed, n), twin::sph::implicit(&want, &wanted, &around, dt));
     for &i in &concerned {
         close("implicit viscosity", Vec3::from_slice(&got[i]), slowed[i], 1e-3);
     }
-    run(&|r| r.dispatch(&p.sph_settle, &b.settle, groups));
-    let got = read(&sph.predicted, n);
+    run(&|r| r.dispatch_with(&p.sph_settle, &b.settle, &substep(0), groups));
+    let (got, after) = (read(&sph.predicted, n), read(braking, n));
     for &i in &concerned {
         close("settled", Vec3::from_slice(&got[i]), free[i] + slowed[i] - wanted[i], 1e-3);
+        close("braking", Vec3::from_slice(&after[order[i]]), (slowed[i] - wanted[i]) / dt, 0.5);
     }
 
     // What is left of a round, all of the next one, which lets another run, and the end of the substep.

@@ -18,6 +18,7 @@ mod rigid;
 mod sliding;
 mod sph;
 mod sph_drops;
+mod spread;
 mod waves;
 
 #[cfg(test)]
@@ -149,6 +150,8 @@ pub const CASES: &[Case] = &[
     Case { name: "V20 SPH", quick: true, run: sph::poiseuille },
     Case { name: "V21 SPH", quick: false, run: sph_drops::swinging },
     Case { name: "V22 SPH", quick: true, run: sph_drops::laplace },
+    Case { name: "spread", quick: false, run: spread::grid },
+    Case { name: "spread SPH", quick: false, run: spread::sph },
     Case { name: "V23", quick: false, run: coupling::floating },
     Case { name: "V23 SPH", quick: false, run: sph::buoyancy },
     Case { name: "V26", quick: true, run: repeat::same_bits },

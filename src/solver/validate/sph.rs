@@ -219,6 +219,7 @@ pub(super) fn poiseuille(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         ("V20 Poiseuille, 10 spacings, mean velocity", 10, 50.0),
         ("V20 Poiseuille, 24 spacings, mean velocity", 24, 200.0),
         ("V20 Poiseuille, 1e3 Pa s, mean velocity", 16, 1e3),
+        ("V20 Poiseuille, 1e6 Pa s, mean velocity", 16, 1e6),
     ];
     for (name, across, viscosity_pa_s) in others {
         let [expected, measured] = channel(gpu, across, viscosity_pa_s)?;
