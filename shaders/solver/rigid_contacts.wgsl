@@ -37,12 +37,22 @@ struct Facing {
     normal: vec3<f32>,
 }
 
+// Past the edges of a box its nearest point counts, not the planes of its faces: what slides along it meets the edge.
+fn beside_collider(c: Collider, x: vec3<f32>) -> Facing {
+    let d = x - c.at.xyz;
+    let beyond = max(abs(d) - c.shape.xyz, vec3<f32>(0.0));
+    let away_m = length(beyond);
+    if (c.at.w == 1.0 && away_m > 0.0) {
+        return Facing(away_m, sign(d) * beyond / away_m);
+    }
+    let t = touch(c, x);
+    return Facing(t.distance_m, surface_normal(c, t.face, x));
+}
+
 // The other's surface as seen from a point of the world.
 fn facing(other: u32, x: vec3<f32>) -> Facing {
     if (other < params.collider_count) {
-        let c = colliders[other];
-        let t = touch(c, x);
-        return Facing(t.distance_m, surface_normal(c, t.face, x));
+        return beside_collider(colliders[other], x);
     }
     let b = other - params.collider_count;
     let q = bodies[b].turn;
@@ -66,19 +76,22 @@ fn outward_at(a: u32, x: vec3<f32>) -> vec3<f32> {
 
 // The point of the body's surface near `start` that is nearest to the other. Both surfaces turn towards
 // each other along the way: how fast is measured over one spacing of the points, which is Newton's
-// method with a slope that small bumps do not upset.
+// method with a slope that small bumps do not upset. Where they turn by far more than a right angle something sharp lies
+// between the points of the surface: that is found by halves.
 fn slide(a: u32, other: u32, start: vec3<f32>, margin_m: f32) -> Found {
     let q = bodies[a].turn;
     let centre = bodies[a].centre.xyz;
-    let step_m = shapes[a].apart_m;
+    var step_m = shapes[a].apart_m;
     var x = start;
     var seen = facing(other, centre + turned(q, x));
-    // No farther than a surface bends away over the way to the next point.
-    if (seen.distance_m > margin_m + 0.35 * step_m) {
+    // Whatever touches the surface is no farther from the nearest point, and what bends little much less.
+    if (seen.distance_m > margin_m + step_m) {
         return Found(x, NOWHERE, seen.normal);
     }
+    var far = seen.distance_m > margin_m + 0.35 * step_m;
+    var rounds = RIGID_SLIDES;
     var outward = vec3<f32>(0.0);
-    for (var k = 0u; k < RIGID_SLIDES; k++) {
+    for (var k = 0u; k < rounds; k++) {
         let level = level_at(a, x);
         let size2 = max(dot(level.gradient, level.gradient), 1e-6);
         x -= level.gradient * (level.distance_m / size2);
@@ -86,14 +99,21 @@ fn slide(a: u32, other: u32, start: vec3<f32>, margin_m: f32) -> Found {
         let n = turned_back(q, seen.normal);
         let down = outward * dot(n, outward) - n;
         let tilt = length(down);
-        if (tilt < 1e-4 || k + 1u == RIGID_SLIDES) {
+        if (tilt < 1e-4 || k + 1u == rounds) {
             break;
         }
         let d = down / tilt;
         let ahead = x + step_m * d;
         let there = turned_back(q, facing(other, centre + turned(q, ahead)).normal);
-        let bend = dot(outward_at(a, ahead) - outward + there - n, d) / step_m;
-        x += d * min(tilt / max(bend, 0.05 / step_m), step_m);
+        let bend = dot(outward_at(a, ahead) - outward + there - n, d);
+        x += d * (step_m * min(tilt / max(bend, 0.05), 1.0));
+        if (bend > RIGID_SHARP) {
+            far = false;
+            rounds = 2u * RIGID_SLIDES;
+            step_m *= 0.5;
+        } else if (far) {
+            return Found(x, NOWHERE, seen.normal);
+        }
         seen = facing(other, centre + turned(q, x));
     }
     seen = facing(other, centre + turned(q, x));

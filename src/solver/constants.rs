@@ -204,8 +204,11 @@ pub const RIGID_FIELD: u32 = 4_000_000;
 pub const RIGID_SLOTS: u32 = 12;
 /// Contacts that a body had in the substep before, at most: four a slot.
 pub const RIGID_OLD: u32 = 4 * RIGID_SLOTS;
-/// Steps in which a surface point slides to where it is nearest, at most.
+/// Steps in which a surface point slides to where it is nearest, at most; twice as many where that is sharp.
 pub const RIGID_SLIDES: u32 = 4;
+/// Two surfaces that turn towards each other by more than this, as a sum of sines, from one point to the next: one is sharp.
+/// The edge of a box that stands on a plane makes 1, a needle under a face 2.
+pub const RIGID_SHARP: f32 = 1.2;
 /// Colours of manifolds that share no body. What finds none is solved one after another.
 pub const RIGID_COLOURS: u32 = 128;
 /// Rounds of impulses before positions move.
@@ -351,6 +354,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("RIGID_SLOTS", Constant::U32(RIGID_SLOTS)),
         ("RIGID_OLD", Constant::U32(RIGID_OLD)),
         ("RIGID_SLIDES", Constant::U32(RIGID_SLIDES)),
+        ("RIGID_SHARP", Constant::F32(RIGID_SHARP)),
         ("RIGID_COLOURS", Constant::U32(RIGID_COLOURS)),
         ("RIGID_ROUNDS", Constant::U32(RIGID_ROUNDS)),
         ("RIGID_CALM_ROUNDS", Constant::U32(RIGID_CALM_ROUNDS)),

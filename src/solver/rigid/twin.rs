@@ -53,6 +53,11 @@ struct Found {
 impl World<'_> {
     fn facing(&self, bodies: &[Body], other: usize, x: Vec3) -> Facing {
         if let Some(c) = self.colliders.get(other) {
+            let beyond = ((x - xyz(&c.at)).abs() - xyz(&c.shape)).max(Vec3::ZERO);
+            if c.at[3] == 1.0 && beyond != Vec3::ZERO {
+                let normal = (x - xyz(&c.at)).signum() * beyond.normalize();
+                return Facing { distance_m: beyond.length(), normal };
+            }
             let t = c.touch(x);
             return Facing { distance_m: t.distance_m, normal: c.normal(t.face, x) };
         }
@@ -65,14 +70,16 @@ impl World<'_> {
 
     fn slide(&self, bodies: &[Body], a: usize, other: usize, start: Vec3, margin_m: f32) -> Found {
         let (q, centre, field) = (turn(&bodies[a]), xyz(&bodies[a].centre_m), &self.all.fields[a]);
-        let step_m = self.all.shapes[a].apart_m;
+        let mut step_m = self.all.shapes[a].apart_m;
         let mut x = start;
         let mut seen = self.facing(bodies, other, centre + q * x);
-        if seen.distance_m > margin_m + 0.35 * step_m {
+        let mut far = seen.distance_m > margin_m + 0.35 * step_m;
+        if seen.distance_m > margin_m + step_m {
             return Found { local: x, gap_m: NOWHERE, normal: seen.normal };
         }
+        let mut rounds = RIGID_SLIDES;
         let mut outward = Vec3::ZERO;
-        for k in 0..RIGID_SLIDES {
+        for k in 0..2 * RIGID_SLIDES {
             let level = field.at(x);
             let size2 = level.gradient.length_squared().max(1e-6);
             x -= level.gradient * (level.distance_m / size2);
@@ -80,14 +87,19 @@ impl World<'_> {
             let n = q.inverse() * seen.normal;
             let down = outward * n.dot(outward) - n;
             let tilt = down.length();
-            if tilt < 1e-4 || k + 1 == RIGID_SLIDES {
+            if tilt < 1e-4 || k + 1 == rounds {
                 break;
             }
             let d = down / tilt;
             let ahead = x + d * step_m;
             let there = q.inverse() * self.facing(bodies, other, centre + q * ahead).normal;
-            let bend = (field.at(ahead).gradient.normalize() - outward + there - n).dot(d) / step_m;
-            x += d * (tilt / bend.max(0.05 / step_m)).min(step_m);
+            let bend = (field.at(ahead).gradient.normalize() - outward + there - n).dot(d);
+            x += d * (step_m * (tilt / bend.max(0.05)).min(1.0));
+            if bend > RIGID_SHARP {
+                (far, rounds, step_m) = (false, 2 * RIGID_SLIDES, 0.5 * step_m);
+            } else if far {
+                return Found { local: x, gap_m: NOWHERE, normal: seen.normal };
+            }
             seen = self.facing(bodies, other, centre + q * x);
         }
         seen = self.facing(bodies, other, centre + q * x);

@@ -7,7 +7,7 @@ use crate::solver::constants::RIGID_SLOTS;
 use crate::solver::rigid::body::{self, Contact, Manifold};
 use crate::solver::validate::{block, joined, rigid_body as rigid};
 use crate::solver::{Collider, Particles};
-use crate::spec::{BoxShape, ColliderShape};
+use crate::spec::{BoxShape, ColliderShape, SphereShape};
 use glam::Vec3;
 
 fn stone(low_m: Vec3, size_m: Vec3) -> Particles {
@@ -46,6 +46,23 @@ fn every_bar_of_a_pile_lies_on_the_one_below() {
     for (k, (below, above)) in bars.iter().zip(&bars[4..]).enumerate() {
         let apart_m = centre(above).z - centre(below).z;
         assert!(apart_m > 0.055, "bar {} is {apart_m} m above bar {k}", k + 4);
+    }
+}
+
+#[test]
+fn what_is_thinner_than_the_points_of_a_face_are_apart_does_not_pass_through() {
+    // Points of the slab's faces are some 3.5 cm apart.
+    let mut slab = stone(Vec3::new(-0.15, -0.15, 0.001), Vec3::new(0.3, 0.3, 0.1));
+    slab.velocity_m_s.fill(Vec3::new(0.0, 0.0, -1.0));
+    for k in 0..8 {
+        let [x, y] = [0.011 * f64::from(k) - 0.04, 0.023 - 0.0073 * f64::from(k)];
+        let nail = ColliderShape::Sphere(SphereShape { centre_m: [x, y, -0.004], radius_m: 0.004 });
+        for (name, met) in [("nail", Collider { shape: nail, friction: 0.4, restitution: 0.0 }), ("post", post([x, y, -0.1], [0.006, 0.006, 0.2]))] {
+            let mut solver = solver(Settings { colliders: vec![met], ..floating() }, &slab);
+            advance(&mut solver, 0.02);
+            let slab = bodies_of(&solver)[0];
+            assert!(velocity(&slab).z > -0.5, "the {name} at {x:.3} {y:.3} goes in at {}", velocity(&slab));
+        }
     }
 }
 

@@ -74,7 +74,8 @@ fn what_a_pin_sets_off_at_once_fits_the_first_sums() {
 
 #[test]
 fn light_and_heavy_bodies_rest_on_jelly() {
-    for density in [100.0f32, 4000.0] {
+    // Under the lid's weight alone the jelly below it gives way by 0.15 and 5.9 mm; what is beside it holds some of that.
+    for (density, lowest) in [(100.0f32, 0.148), (4000.0, 0.14)] {
         let jelly = block(Vec3::new(-0.15, -0.15, 0.0), Vec3::new(0.3, 0.3, 0.15), 0.025, 1e5, 0.3);
         let (soft, mut lid) = (jelly.len(), rigid(block(Vec3::new(-0.075, -0.075, 0.17), Vec3::new(0.15, 0.15, 0.1), 0.025, 1e5, 0.3), 0.4, 0.0));
         lid.density_kg_m3.fill(density);
@@ -84,7 +85,7 @@ fn light_and_heavy_bodies_rest_on_jelly() {
         let body = bodies_of(&solver)[0];
         assert!(velocity(&body).length() < 0.1, "at {density} kg/m3 it moves at {}", velocity(&body));
         let low = centre(&body).z - 0.05;
-        assert!(low > 0.05 && low < 0.18, "at {density} kg/m3 its underside is at {low} m");
+        assert!(low > lowest && low < 0.155, "at {density} kg/m3 its underside is at {low} m");
         assert!(solver.states().expect("states")[..soft].iter().all(|s| s.position_m.is_finite() && s.position_m.z > -1e-4));
     }
 }
