@@ -36,3 +36,7 @@ fn key_of(cell: vec3<i32>) -> u32 {
 fn proper(x: vec3<f32>) -> bool {
     return (bitcast<u32>(x.x + x.y + x.z) & 0x7f800000u) != 0x7f800000u;
 }
+
+fn cubed(x: f32) -> f32 {
+    return x * x * x;
+}

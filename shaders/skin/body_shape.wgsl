@@ -6,9 +6,11 @@
 @group(0) @binding(1) var<storage, read> order: array<u32>;
 @group(0) @binding(2) var<storage, read> spans: array<u32>;
 @group(0) @binding(3) var<storage, read> sorted: array<vec4<u32>>;
-@group(0) @binding(4) var<storage, read_write> geometry: array<vec4<f32>>;
+/// Of each sorted particle, the mean light of what it has come to.
+@group(0) @binding(4) var<storage, read> stirred_light: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> geometry: array<vec4<f32>>;
 /// The first plane of spherical harmonics.
-@group(0) @binding(5) var<storage, read_write> sh: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read_write> sh: array<vec4<f32>>;
 
 // What lies around a particle, each by its volume and by how near it is. Lengths in reaches, of as many cells as were looked through.
 struct Around {
@@ -20,10 +22,6 @@ struct Around {
     colour: vec3<f32>,
 }
 
-fn cubed(x: f32) -> f32 {
-    return x * x * x;
-}
-
 fn around(x: vec3<f32>, cells: i32) -> Around {
     let home = cell_of(x);
     let reach_m = f32(cells) * params.reach_m;
@@ -32,8 +30,7 @@ fn around(x: vec3<f32>, cells: i32) -> Around {
     var first = vec3(0.0);
     var square = vec3(0.0);
     var mixed = vec3(0.0);
-    var colour = vec3(0.0);
-    var coloured = 1e-20;
+    var light = vec3(0.0);
     for (var c = 0; c < side * side * side; c++) {
         let cell = home + vec3(c % side, c / side % side, c / (side * side)) - vec3(cells);
         let key = key_of(cell);
@@ -52,18 +49,14 @@ fn around(x: vec3<f32>, cells: i32) -> Around {
             first += w * d;
             square += w * d * d;
             mixed += w * d.yzx * d.zxy;
-            // What it brought along counts less than what it came to. Colours are as good as square roots of light.
-            let stirred_in = select(w, w * OWN_COLOUR, apart2 == 0.0);
-            let root = bitcast<vec3<f32>>(sorted[2u * k + 1u].xyz);
-            colour += stirred_in * root * root;
-            coloured += stirred_in;
+            light += w * stirred_light[k].xyz;
         }
     }
     let per = 1.0 / max(volume, 1e-20);
     let mean = first * per;
     let d = square * per - mean * mean;
     let o = mixed * per - mean.yzx * mean.zxy;
-    return Around(volume, mean, mat3x3(d.x, o.z, o.y, o.z, d.y, o.x, o.y, o.x, d.z), sqrt(colour / coloured));
+    return Around(volume, mean, mat3x3(d.x, o.z, o.y, o.z, d.y, o.x, o.y, o.x, d.z), sqrt(light * per));
 }
 
 // What a particle looks like.
@@ -76,6 +69,8 @@ struct Look {
     inward: vec3<f32>,
     // Over that of a drop.
     thickness: f32,
+    // Its radius over that of its volume.
+    full: f32,
     colour: vec3<f32>,
 }
 
@@ -87,7 +82,7 @@ fn looked(size_m: f32, here: Around, cells: f32) -> Look {
     let joined = 1.0 - smoothstep(ALONE_LOW, ALONE_HIGH, own);
     // 0 in a thread, 1 in a sheet or a body.
     let broad = smoothstep(BROAD_LOW, BROAD_HIGH, sqrt(max(axes.values.y, 0.0) / max(axes.values.x, 1e-12)));
-    let sheet = (1.0 - smoothstep(THIN_LOW, THIN_HIGH, max(axes.values.z, 0.0) / max(axes.values.y, 1e-12))) * joined;
+    let sheet = (1.0 - smoothstep(THIN_LOW, THIN_HIGH, max(axes.values.z, 0.0) / max(axes.values.y, 1e-12))) * broad * joined;
 
     // The way out: away from the middle of what is around; in a sheet, across it.
     let off = length(here.middle);
@@ -96,20 +91,24 @@ fn looked(size_m: f32, here: Around, cells: f32) -> Look {
     let across = axes.least * select(-1.0, 1.0, dot(axes.least, outward) >= 0.0);
     let n = normalize(mix(outward, across, sheet) + vec3(1e-9, 0.0, 0.0));
 
-    // How many times farther apart than its own size those around it lie, along the thread or the sheet.
+    // What was thin has less volume than lies between its particles: among others each covers that. And how many times farther
+    // apart they lie, along the thread or the sheet.
+    let spare = max(params.spacing_m / size_m, 1.0);
     let apart = mix(THREAD * cells * own, cells * sqrt(SHEET * own), broad);
-    let wide = mix(1.0, clamp(apart, 1.0, WIDEST), mix(joined, sheet, broad));
-    let flat = 1.0 + (FLAT - 1.0) * skin * (1.0 - sheet);
-    let across_r = mix(inverseSqrt(wide), wide, broad) * flat;
-    let thickness = max(mix(inverseSqrt(wide), 1.0 / (wide * wide), broad), THINNEST);
-    let thin_r = thickness / (flat * flat);
+    let held = min(mix(1.0, max(apart, 1.0) * spare, mix(joined, sheet, broad)), WIDEST);
+    let full = mix(1.0, spare, joined * (1.0 - sheet) * broad);
+    let flat = 1.0 + (FLAT - 1.0) * max(skin, sheet);
+    let across_r = mix(inverseSqrt(held), held, broad) * flat * full;
+    let thickness = max(mix(inverseSqrt(held), 1.0 / (held * held), broad), THINNEST);
+    let thin_r = thickness * full / flat;
     let t = axes.most;
     let along = mat3x3(t * t.x, t * t.y, t * t.z);
     let through = mat3x3(n * n.x, n * n.y, n * n.z);
     let unit = mat3x3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-    let longer = max(wide * wide - across_r * across_r, 0.0) * (1.0 - broad) * joined;
+    let longer = max(held * held - across_r * across_r, 0.0) * (1.0 - broad) * joined;
     let c = unit * (across_r * across_r) - through * (across_r * across_r - thin_r * thin_r) + along * longer;
-    return Look(c, n * max(skin, sheet), here.middle * (reach_m * EVEN * max(1.0 - SKIN / max(off, 1e-6), 0.0) * joined), thickness, here.colour);
+    let inward = here.middle * (reach_m * EVEN * max(1.0 - SKIN / max(off, 1e-6), 0.0) * joined);
+    return Look(c, n * max(skin, sheet), inward, thickness, full, here.colour);
 }
 
 // Where few are near, those that are farther off count too, the more the fewer are near: a sheet one particle thick
@@ -127,6 +126,7 @@ fn look(x: vec3<f32>, size_m: f32) -> Look {
         mix(near.normal, far.normal * select(-1.0, 1.0, dot(near.normal, far.normal) >= 0.0), few),
         mix(near.inward, far.inward, few),
         mix(near.thickness, far.thickness, few),
+        mix(near.full, far.full, few),
         mix(near.colour, far.colour, few),
     );
 }
@@ -164,7 +164,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     if kind == 1u {
         // Grains stay round and do not mix. Each is a little lighter or darker than the next.
         x = own.xyz;
-        c = mat3x3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0) * (GRAIN * GRAIN * radius_m * radius_m);
+        c = mat3x3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0) * (GRAIN * GRAIN * seen.full * seen.full * radius_m * radius_m);
         colour = mine * (1.0 + TONE * (f32(stirred(order[k]) >> 8u) / 8388608.0 - 1.0));
         gloss = 0.0;
     }

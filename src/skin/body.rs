@@ -25,11 +25,11 @@ pub const GONE: [f32; 2] = [0.4, 1.0];
 /// The same of grains, which are seen to slide past each other.
 pub const GRAINS_GONE: [f32; 2] = [0.15, 0.5];
 /// Share of them that has left at which a particle begins to be seen, and has wholly parted.
-pub const PARTED: [f32; 2] = [0.05, 0.5];
+pub const PARTED: [f32; 2] = [0.02, 0.25];
 /// Standard deviation of a drop's Gaussian over the particle's size: at half of its opacity it ends where a ball of the volume does.
 pub const RADIUS: f32 = 0.53;
 /// A grain's over a drop's, so that grains stay apart to the eye.
-pub const GRAIN: f32 = 0.8;
+pub const GRAIN: f32 = 0.9;
 /// Size over the whole when it begins to be seen.
 pub const YOUNG: f32 = 0.6;
 /// How far parted it is when it is as opaque as it gets, and how opaque that is.
@@ -54,8 +54,8 @@ pub const FEW: [f32; 2] = [0.22, 0.4];
 /// The middle of what is around a particle of a surface lies so far from it, in reaches: 0.246 if the surface passed through it,
 /// less as it lies half a spacing below.
 pub const SKIN: f32 = 0.14;
-/// At a surface it is so much wider, and thinner by the square of that.
-pub const FLAT: f32 = 1.15;
+/// At a surface it is so much wider and thinner, so that it is even.
+pub const FLAT: f32 = 1.25;
 /// Share by which what sticks out of a surface is drawn in.
 pub const EVEN: f32 = 0.8;
 /// Ratio of the two least spreads, squared, up to which it is a sheet whose way out is across it, and from which it is a body's surface.
@@ -161,6 +161,8 @@ fn spacing_m(volume_m3: &[f32]) -> f32 {
 pub(super) struct Body {
     place: Kernel,
     order: Kernel,
+    stir: Kernel,
+    stir_bindings: wgpu::BindGroup,
     shape: Kernel,
     shape_bindings: wgpu::BindGroup,
     sort: Recording,
@@ -187,12 +189,16 @@ impl Body {
         let plan = radix.plan(gpu, &buffers, &extent, places.trailing_zeros() + 1);
         let spans = gpu.storage::<[u32; 2]>("skin.spans", places as usize)?;
         let sorted = gpu.storage::<[u32; 8]>("skin.sorted", count as usize)?;
-        let [place, order, shape] = sources().map(|source| gpu.kernel(&source));
+        let stirred = gpu.storage::<[f32; 4]>("skin.stirred_light", count as usize)?;
+        let [place, order, stir, shape] = sources().map(|source| gpu.kernel(&source));
         let to = plan.sorted;
+        let (keys, values) = (&buffers.keys[to], &buffers.values[to]);
         Ok(Body {
-            shape_bindings: gpu.bind(&shape, &[&buffers.keys[to], &buffers.values[to], &spans, &sorted, &splats.geometry, &splats.sh]),
+            stir_bindings: gpu.bind(&stir, &[keys, &spans, &sorted, &stirred]),
+            shape_bindings: gpu.bind(&shape, &[keys, values, &spans, &sorted, &stirred, &splats.geometry, &splats.sh]),
             place,
             order,
+            stir,
             shape,
             sort: plan.recording,
             buffers,
@@ -226,6 +232,7 @@ impl Body {
         let order = [&keys[self.to], &values[self.to], motion, &self.tint, &self.parted, &self.spans, &self.sorted];
         let order = gpu.bind(&self.order, &order);
         run(recording, &self.order, &order);
+        run(recording, &self.stir, &self.stir_bindings);
         run(recording, &self.shape, &self.shape_bindings);
     }
 }
@@ -237,7 +244,7 @@ macro_rules! part {
 }
 
 /// The passes, in the order in which they run; between the first two keys are sorted.
-pub(super) fn sources() -> [KernelSource; 3] {
+pub(super) fn sources() -> [KernelSource; 4] {
     use Access::{Read, Write};
     let pass = |label, parts: &[(&'static str, &'static str)], bindings| KernelSource {
         label,
@@ -250,7 +257,8 @@ pub(super) fn sources() -> [KernelSource; 3] {
     [
         pass("skin.body_place", &[AFFINE, part!("body_place")], vec![Read, Read, Read, Write, Write, Write]),
         pass("skin.body_order", &[AFFINE, part!("body_order")], vec![Read, Read, Read, Read, Read, Write, Write]),
-        pass("skin.body_shape", &[ROTATION, part!("principal"), part!("body_shape")], vec![Read, Read, Read, Read, Write, Write]),
+        pass("skin.body_stir", &[part!("body_stir")], vec![Read, Read, Read, Write]),
+        pass("skin.body_shape", &[ROTATION, part!("principal"), part!("body_shape")], vec![Read, Read, Read, Read, Read, Write, Write]),
     ]
 }
 

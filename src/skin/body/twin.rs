@@ -24,21 +24,38 @@ struct Around {
     colour: Vec3,
 }
 
+/// Weight of what is `from` a place, given its size.
+fn weight(from: Vec3, size_m: f32, reach_m: f32) -> f32 {
+    (1.0 - (from / reach_m).length_squared()).max(0.0).powi(3) * (size_m / reach_m).powi(3)
+}
+
+/// Pass `skin.body_stir`: the mean light of what a particle has come to.
+pub fn stirred_light(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Vec3 {
+    let reach_m = REACH * filling.spacing_m;
+    let (mut light, mut total) = (Vec3::ZERO, 0.0);
+    for (j, &x) in places.iter().enumerate().filter(|(j, _)| flow[*j] > 0) {
+        let w = weight(x - places[i], filling.tint[j][3], reach_m) * if j == i { OWN_COLOUR } else { 1.0 };
+        light += Vec3::from_slice(&filling.tint[j]).powf(2.0) * w;
+        total += w;
+    }
+    light / total
+}
+
 fn around(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize, cells: f32) -> Around {
     let reach_m = cells * REACH * filling.spacing_m;
-    let (mut volume, mut first, mut second, mut light, mut stirred) = (0.0, Vec3::ZERO, Mat3::ZERO, Vec3::ZERO, 1e-20);
+    let (mut volume, mut first, mut second, mut light) = (0.0, Vec3::ZERO, Mat3::ZERO, Vec3::ZERO);
     for (j, &x) in places.iter().enumerate().filter(|(j, _)| flow[*j] > 0) {
-        let d = (x - places[i]) / reach_m;
-        let w = (1.0 - d.length_squared()).max(0.0).powi(3) * (filling.tint[j][3] / reach_m).powi(3);
-        volume += w;
-        first += d * w;
-        second += outer(d, d) * w;
-        let w = if j == i { w * OWN_COLOUR } else { w };
-        light += Vec3::from_slice(&filling.tint[j]).powf(2.0) * w;
-        stirred += w;
+        let w = weight(x - places[i], filling.tint[j][3], reach_m);
+        if w > 0.0 {
+            let d = (x - places[i]) / reach_m;
+            volume += w;
+            first += d * w;
+            second += outer(d, d) * w;
+            light += stirred_light(filling, places, flow, j) * w;
+        }
     }
     let mean = first / volume;
-    Around { volume, middle: mean, spread: second * (1.0 / volume) - outer(mean, mean), colour: (light / stirred).powf(0.5) }
+    Around { volume, middle: mean, spread: second * (1.0 / volume) - outer(mean, mean), colour: (light / volume).powf(0.5) }
 }
 
 /// What a particle looks like; see `struct Look`.
@@ -47,6 +64,7 @@ struct Look {
     normal: Vec3,
     inward: Vec3,
     thickness: f32,
+    full: f32,
     colour: Vec3,
 }
 
@@ -60,7 +78,7 @@ fn looked(size_m: f32, here: &Around, cells: f32, filling: &Filling) -> Look {
     let (values, most, least) = principal(here.spread);
     let joined = 1.0 - smoothstep(ALONE, own);
     let broad = smoothstep(BROAD, (values[1].max(0.0) / values[0].max(1e-12)).sqrt());
-    let sheet = (1.0 - smoothstep(THIN, values[2].max(0.0) / values[1].max(1e-12))) * joined;
+    let sheet = (1.0 - smoothstep(THIN, values[2].max(0.0) / values[1].max(1e-12))) * broad * joined;
 
     let off = here.middle.length();
     let outward = -here.middle / off.max(1e-6);
@@ -68,18 +86,21 @@ fn looked(size_m: f32, here: &Around, cells: f32, filling: &Filling) -> Look {
     let across = if least.dot(outward) >= 0.0 { least } else { -least };
     let n = (outward.lerp(across, sheet) + Vec3::X * 1e-9).normalize();
 
+    let spare = (filling.spacing_m / size_m).max(1.0);
     let apart = mix(THREAD * cells * own, cells * (SHEET * own).sqrt(), broad);
-    let wide = mix(1.0, apart.clamp(1.0, WIDEST), mix(joined, sheet, broad));
-    let flat = 1.0 + (FLAT - 1.0) * skin * (1.0 - sheet);
-    let across_r = mix(wide.powf(-0.5), wide, broad) * flat;
-    let thickness = mix(wide.powf(-0.5), wide.powi(-2), broad).max(THINNEST);
-    let longer = (wide * wide - across_r * across_r).max(0.0) * (1.0 - broad) * joined;
-    let flattened = outer(n, n) * (across_r * across_r - (thickness / (flat * flat)).powi(2));
+    let held = mix(1.0, apart.max(1.0) * spare, mix(joined, sheet, broad)).min(WIDEST);
+    let full = mix(1.0, spare, joined * (1.0 - sheet) * broad);
+    let flat = 1.0 + (FLAT - 1.0) * skin.max(sheet);
+    let across_r = mix(held.powf(-0.5), held, broad) * flat * full;
+    let thickness = mix(held.powf(-0.5), held.powi(-2), broad).max(THINNEST);
+    let longer = (held * held - across_r * across_r).max(0.0) * (1.0 - broad) * joined;
+    let flattened = outer(n, n) * (across_r * across_r - (thickness * full / flat).powi(2));
     Look {
         covariance: Mat3::IDENTITY * (across_r * across_r) - flattened + outer(most, most) * longer,
         normal: n * skin.max(sheet),
         inward: here.middle * (reach_m * EVEN * (1.0 - SKIN / off.max(1e-6)).max(0.0) * joined),
         thickness,
+        full,
         colour: here.colour,
     }
 }
@@ -95,6 +116,7 @@ fn look(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Look {
         normal: near.normal.lerp(if near.normal.dot(far.normal) >= 0.0 { far.normal } else { -far.normal }, few),
         inward: near.inward.lerp(far.inward, few),
         thickness: mix(near.thickness, far.thickness, few),
+        full: mix(near.full, far.full, few),
         colour: near.colour.lerp(far.colour, few),
     }
 }
@@ -115,7 +137,7 @@ pub fn drawn(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Opti
     let (x, c, colour, gloss) = match flow[i] {
         1 => {
             let tone = 1.0 + TONE * ((stirred(i as u32) >> 8) as f32 / 8_388_608.0 - 1.0);
-            (places[i], Mat3::IDENTITY * (GRAIN * radius_m).powi(2), mine * tone, 0.0)
+            (places[i], Mat3::IDENTITY * (GRAIN * look.full * radius_m).powi(2), mine * tone, 0.0)
         }
         flow => {
             opacity *= if flow == 3 { 1.0 - CLEAR * (1.0 - look.thickness).max(0.0) } else { 1.0 };
