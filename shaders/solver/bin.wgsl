@@ -8,12 +8,23 @@
 @group(0) @binding(3) var<storage, read_write> block_info: array<atomic<u32>>;
 @group(0) @binding(4) var<storage, read_write> control: Control;
 
-// Stencil and slack span two blocks along each axis, or three.
-fn reach(low: vec3<u32>, high: vec3<u32>, layer: u32) {
-    for (var z = low.z; z <= high.z; z++) {
-        for (var y = low.y; y <= high.y; y++) {
-            for (var x = low.x; x <= high.x; x++) {
-                atomicStore(&block_info[2u * block_number(vec3<u32>(x, y, z), layer) + 1u], 1u);
+// Stencil and slack span two blocks along each axis, or three: bits of the 3^3 around the particle's own.
+fn reached(at: vec3<u32>, low: vec3<u32>, high: vec3<u32>) -> u32 {
+    let before = vec3<u32>(low < at);
+    let after = vec3<u32>(high > at);
+    let row = before.x | 2u | (after.x << 2u);
+    let slab = row * (before.y | 8u | (after.y << 6u));
+    return slab * (before.z | 512u | (after.z << 18u));
+}
+
+// Blocks that any of the subgroup's particles reach, all of one block: each lane marks some of them.
+fn reach_together(at: vec3<u32>, bits: u32, layer: u32, lane: u32, lanes: u32) {
+    for (var k = lane; k < 27u; k += lanes) {
+        if (((bits >> k) & 1u) != 0u) {
+            let block = at + vec3<u32>(k % 3u, k / 3u % 3u, k / 9u) - vec3<u32>(1u);
+            atomicStore(&block_info[2u * block_number(block, layer) + 1u], 1u);
+            if (params.pools != 0u) {
+                atomicStore(&block_info[2u * block_number(block, 0u) + 1u], 1u);
             }
         }
     }
@@ -30,20 +41,24 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     if (!in_window(first - slack) || !in_window(first + slack)) {
         atomicStore(&control.window, 1u);
     }
-    // Neighbours mostly share a block since the last sort.
-    let block = block_number(clamped_cell(first) >> vec3<u32>(2u), sorted_into(tag));
-    if (subgroupAll(block == subgroupBroadcastFirst(block))) {
-        let together = subgroupAdd(1u);
-        if (lane == subgroupMin(lane)) {
-            atomicAdd(&block_info[2u * block], together);
-        }
-    } else {
-        atomicAdd(&block_info[2u * block], 1u);
-    }
     let low = clamped_cell(first - slack) >> vec3<u32>(2u);
     let high = clamped_cell(first + vec3<i32>(2) + slack) >> vec3<u32>(2u);
-    reach(low, high, layer_of(tag));
-    if (params.pools != 0u && layer_of(tag) != 0u) {
-        reach(low, high, 0u);
+    let layer = layer_of(tag);
+    let at = clamped_cell(first) >> vec3<u32>(2u);
+    let mine = vec2<u32>(block_number(at, sorted_into(tag)), layer);
+    let bits = reached(at, low, high);
+    // Neighbours mostly share a block, or a few: the lanes of one after the other.
+    let lanes = subgroupAdd(1u);
+    var waits = true;
+    while (subgroupAny(waits)) {
+        let speaker = subgroupMin(select(0xffffffffu, lane, waits));
+        let block = subgroupShuffle(mine, speaker);
+        let counts = waits && all(mine == block);
+        let together = subgroupAdd(select(0u, 1u, counts));
+        if (lane == speaker) {
+            atomicAdd(&block_info[2u * block.x], together);
+        }
+        reach_together(subgroupShuffle(at, speaker), subgroupOr(select(0u, bits, counts)), block.y, lane, lanes);
+        waits = waits && !counts;
     }
 }

@@ -25,7 +25,7 @@ struct Control {
     high_z: atomic<i32>,
     // Bits of the largest speed at the end of the segment.
     final_speed: atomic<u32>,
-    // Bits of the fastest wave's speed at the end of the segment.
+    // Bits of the largest speed that bounds a substep, at the end of the segment.
     wave_speed: atomic<u32>,
     // 1 where a list of neighbours was too short.
     crowded: atomic<u32>,

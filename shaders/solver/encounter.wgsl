@@ -84,19 +84,27 @@ fn meet(a: ptr<function, Side>, b: ptr<function, Side>) {
     (*b).v += impulse * (*b).ease;
 }
 
-fn side_of(layer: u32, cell: vec3<i32>) -> Side {
-    let node = stored(vec3<u32>(cell), layer);
+// Where each layer stores the workgroup's block.
+var<workgroup> slots: array<u32, MOST_LAYERS>;
+
+// The node of this lane's place in another layer.
+fn node_in(layer: u32, lane: u32) -> u32 {
+    return 64u * slots[layer] + lane;
+}
+
+fn side_of(layer: u32, cell: vec3<i32>, lane: u32) -> Side {
+    let node = node_in(layer, lane);
     let mass = masses[node];
     return Side(layer, node, velocity[node].xyz, abs(mass), select(0.0, 1.0 / mass, mass > 0.0), mass_slope(layer, cell));
 }
 
 // More than two that meet at a node. What one pair settles another may upset.
-fn meet_all(first_layer: u32, cell: vec3<i32>) {
+fn meet_all(first_layer: u32, cell: vec3<i32>, lane: u32) {
     var sides: array<Side, MOST_LAYERS>;
     var count = 0u;
     for (var layer = first_layer; layer < params.layers; layer++) {
-        if (masses[stored(vec3<u32>(cell), layer)] != 0.0) {
-            sides[count] = side_of(layer, cell);
+        if (masses[node_in(layer, lane)] != 0.0) {
+            sides[count] = side_of(layer, cell, lane);
             count++;
         }
     }
@@ -123,9 +131,13 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         return;
     }
     let own = node_of(place, lane);
+    if (lane < params.layers) {
+        slots[lane] = params.slots[block_number(vec3<u32>(own.cell) >> vec3<u32>(2u), lane)];
+    }
+    workgroupBarrier();
     // The first layer that has this block speaks for all.
     for (var layer = 0u; layer < own.layer; layer++) {
-        if (stored(vec3<u32>(own.cell), layer) >= 64u) {
+        if (slots[layer] != 0u) {
             return;
         }
     }
@@ -133,19 +145,18 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
     var first_layer = 0u;
     var last_layer = 0u;
     for (var layer = own.layer; layer < params.layers; layer++) {
-        if (masses[stored(vec3<u32>(own.cell), layer)] != 0.0) {
-            first_layer = select(first_layer, layer, count == 0u);
-            last_layer = layer;
-            count++;
-        }
+        let here = masses[node_in(layer, lane)] != 0.0;
+        first_layer = select(first_layer, layer, here && count == 0u);
+        last_layer = select(last_layer, layer, here);
+        count += select(0u, 1u, here);
     }
     if (count == 2u) {
-        var a = side_of(first_layer, own.cell);
-        var b = side_of(last_layer, own.cell);
+        var a = side_of(first_layer, own.cell, lane);
+        var b = side_of(last_layer, own.cell, lane);
         meet(&a, &b);
         velocity[a.node] = vec4<f32>(a.v, 0.0);
         velocity[b.node] = vec4<f32>(b.v, 0.0);
     } else if (count > 2u) {
-        meet_all(first_layer, own.cell);
+        meet_all(first_layer, own.cell, lane);
     }
 }

@@ -10,14 +10,14 @@ fn double_dot(a: mat3x3<f32>, b: mat3x3<f32>) -> f32 {
     return dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2]);
 }
 
-fn liquid(s: Substance, trial: mat3x3<f32>, history: f32, lambda: f32, flow: Flow) -> Answer {
+fn liquid(s: Substance, trial: mat3x3<f32>, rotation: mat3x3<f32>, history: f32, lambda: f32, flow: Flow) -> Answer {
     let unit = mat3x3<f32>(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(0.0, 0.0, 1.0));
     let stretched = determinant(trial);
     let j = clamp(stretched, LIQUID_J_LEAST, LIQUID_J_MOST);
     // Steps of relaxation times, by backward Euler.
     let relaxing = flow.dt_s * lambda / max(s.values[0], 1e-30);
     // Strain that lasts turns with the flow: the left stretch of F.
-    let stretch = trial * transpose(polar(trial));
+    let stretch = trial * transpose(rotation);
     let mean = (stretch[0].x + stretch[1].y + stretch[2].z) * (1.0 / 3.0);
     var strain = (stretch * (1.0 / max(mean, 1e-3)) - unit) * (1.0 / (1.0 + relaxing));
     let square = max(double_dot(strain, strain), 1e-30);

@@ -2,19 +2,14 @@
 // turn plastic; packed snow is stiffer, loosened snow softer.
 //
 // values: theta_c, theta_s, hardening, the most that it stiffens by. History: det of the plastic part of F.
-fn snow(s: Substance, trial: mat3x3<f32>, history: f32, mu: f32, lambda: f32) -> Answer {
-    let axes = svd(trial);
-    let kept = clamp(axes.s, vec3<f32>(1.0 - s.values[0]), vec3<f32>(1.0 + s.values[1]));
+fn snow(s: Substance, stretches: vec3<f32>, history: f32, mu: f32, lambda: f32) -> Kept {
+    let kept = clamp(stretches, vec3<f32>(1.0 - s.values[0]), vec3<f32>(1.0 + s.values[1]));
     // What is inside out counts as crushed flat.
-    let volume = max(axes.s.x * axes.s.y * axes.s.z, 1e-6);
+    let volume = max(stretches.x * stretches.y * stretches.z, 1e-6);
     let j = kept.x * kept.y * kept.z;
-    var packing = history;
-    var f = trial;
-    if (any(kept != axes.s)) {
-        packing = clamp(history * volume / j, PACKING_LEAST, PACKING_MOST);
-        f = compose(axes.u, kept, axes.v);
-    }
+    let changed = any(kept != stretches);
+    let packing = select(history, clamp(history * volume / j, PACKING_LEAST, PACKING_MOST), changed);
     let stiffening = snow_stiffening(s, packing);
     let stress = stiffening * (2.0 * mu * (kept - vec3<f32>(1.0)) * kept + vec3<f32>(lambda * j * (j - 1.0)));
-    return Answer(f, packing, compose(axes.u, stress, axes.u));
+    return Kept(kept, changed, packing, stress);
 }

@@ -54,10 +54,19 @@ fn ln_near_one(j: f32) -> f32 {
 // Fixed corotated: tau = 2 mu (F - R) F^T + lambda J (J - 1) I (Stomakhin et al. 2012).
 // Neo-Hookean: tau = mu (F F^T - I) + lambda ln J I.
 fn kirchhoff(f: mat3x3<f32>, mu: f32, lambda: f32, neo_hookean: bool) -> mat3x3<f32> {
+    var rotation = f;
+    if (!neo_hookean) {
+        rotation = polar(f);
+    }
+    return kirchhoff_turned(f, rotation, mu, lambda, neo_hookean);
+}
+
+// The same, the rotation R being known.
+fn kirchhoff_turned(f: mat3x3<f32>, rotation: mat3x3<f32>, mu: f32, lambda: f32, neo_hookean: bool) -> mat3x3<f32> {
     let j = determinant(f);
     let unit = mat3x3<f32>(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(0.0, 0.0, 1.0));
     if (neo_hookean) {
         return mu * (f * transpose(f) - unit) + unit * (lambda * ln_near_one(max(j, J_FLOOR)));
     }
-    return (2.0 * mu) * ((f - polar(f)) * transpose(f)) + unit * (lambda * j * (j - 1.0));
+    return (2.0 * mu) * ((f - rotation) * transpose(f)) + unit * (lambda * j * (j - 1.0));
 }

@@ -12,6 +12,7 @@
 @group(0) @binding(6) var<storage, read> block_start: array<u32>;
 @group(0) @binding(7) var<storage, read> cell_end: array<u32>;
 @group(0) @binding(8) var<storage, read_write> control: Control;
+@group(0) @binding(9) var<storage, read> cell_start: array<u32>;
 
 // An item of a block, in which a slot lies: its first slot, and how many.
 fn item_with(slot: u32, block: u32) -> vec2<u32> {
@@ -63,17 +64,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         slot = undealt(slot, item_with(slot, mine.x >> 6u));
         mine = slots[slot];
     }
-    // Slots of a cell are adjacent: those of smaller index on either side.
-    var first = slot;
-    var smaller = 0u;
-    while (first > 0u && slots[first - 1u].x == mine.x) {
-        first -= 1u;
-        smaller += select(0u, 1u, slots[first].y < mine.y);
+    // How many of its cell come before it.
+    var target_slot = cell_start[mine.x];
+    for (var k = cell_start[mine.x]; k < cell_end[mine.x]; k++) {
+        target_slot += select(0u, 1u, slots[k].y < mine.y);
     }
-    for (var k = slot + 1u; k < n && slots[k].x == mine.x; k++) {
-        smaller += select(0u, 1u, slots[k].y < mine.y);
-    }
-    var target_slot = first + smaller;
     if (params.mixes != 0u) {
         target_slot = dealt(target_slot, item_with(target_slot, mine.x >> 6u));
     }

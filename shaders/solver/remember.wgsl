@@ -24,12 +24,13 @@ fn bounded(f: mat3x3<f32>, least: f32, most: f32) -> mat3x3<f32> {
     return compose(axes.u, clamp(axes.s, vec3<f32>(least), vec3<f32>(most)), axes.v);
 }
 
-// Liquid has no shape to keep: what is shown goes back to that of the captured Gaussian, turned.
+// Liquid has no shape to keep: what is shown goes back to that of the captured Gaussian, turned. A step of Newton's
+// iteration leads there.
 fn relaxed(f: mat3x3<f32>, s: Substance, dt_s: f32) -> mat3x3<f32> {
     if (s.kind != LIQUID) {
         return f;
     }
-    return f + (polar(f) - f) * min(dt_s / LIQUID_SHOWN_S, 1.0);
+    return f + (cofactors(f) * (1.0 / determinant(f)) - f) * (0.5 * min(dt_s / LIQUID_SHOWN_S, 1.0));
 }
 
 // Keeps what the law remembers, and what is shown.

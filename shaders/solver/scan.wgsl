@@ -1,27 +1,36 @@
-// Sums over one workgroup, in a fixed order.
+// Sums over one workgroup. Of whole numbers: no order matters.
 
-var<workgroup> lanes: array<vec3<u32>, SCAN_LANES>;
+// Sums of the subgroups.
+var<workgroup> parts: array<vec3<u32>, SCAN_LANES>;
+
+// Where a thread is in its workgroup and in its subgroup.
+struct Place {
+    lane: u32,
+    // Which subgroup, and how many there are.
+    subgroup: u32,
+    subgroups: u32,
+    sublane: u32,
+}
 
 struct Scanned {
     before: vec3<u32>,
     total: vec3<u32>,
 }
 
-// Exclusive prefix sum.
-fn scan(lane: u32, value: vec3<u32>) -> Scanned {
-    lanes[lane] = value;
-    workgroupBarrier();
-    for (var step = 1u; step < SCAN_LANES; step <<= 1u) {
-        var sum = lanes[lane];
-        if (lane >= step) {
-            sum += lanes[lane - step];
-        }
-        workgroupBarrier();
-        lanes[lane] = sum;
-        workgroupBarrier();
+// Exclusive prefix sum in the order of the lanes.
+fn scan(at: Place, value: vec3<u32>) -> Scanned {
+    let within = subgroupExclusiveAdd(value);
+    let all = subgroupAdd(value);
+    if (at.sublane == 0u) {
+        parts[at.subgroup] = all;
     }
-    let total = lanes[SCAN_LANES - 1u];
-    let before = lanes[lane] - value;
+    workgroupBarrier();
+    var before = within;
+    var total = vec3<u32>(0u);
+    for (var k = 0u; k < at.subgroups; k++) {
+        before += select(vec3<u32>(0u), parts[k], k < at.subgroup);
+        total += parts[k];
+    }
     workgroupBarrier();
     return Scanned(before, total);
 }

@@ -20,15 +20,20 @@ fn groups_for(number: u32) -> vec4<u32> {
 
 @compute @workgroup_size(SCAN_LANES)
 fn main(
-    @builtin(local_invocation_index) lane: u32,
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(subgroup_id) subgroup: u32,
+    @builtin(num_subgroups) subgroups: u32,
+    @builtin(subgroup_invocation_id) sublane: u32,
+    @builtin(subgroup_size) lanes: u32,
 ) {
+    let at = Place(subgroup * lanes + sublane, subgroup, subgroups, sublane);
+    let lane = at.lane;
     var earlier = vec3<u32>(0u);
     for (var k = lane; k < group.x; k += SCAN_LANES) {
         earlier += chunk_sums[k];
     }
-    let chunk = scan(lane, earlier).total;
+    let chunk = scan(at, earlier).total;
 
     let total = params.blocks.x * params.blocks.y * params.blocks.z * params.layers;
     let first = (group.x * SCAN_LANES + lane) * SCAN_RUN;
@@ -37,7 +42,7 @@ fn main(
     for (var k = first; k < last; k++) {
         sum += worth(block_info[k]);
     }
-    let scanned = scan(lane, sum);
+    let scanned = scan(at, sum);
     var next = chunk + scanned.before;
     for (var k = first; k < last; k++) {
         let info = block_info[k];

@@ -11,11 +11,19 @@
 @group(0) @binding(6) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(SCAN_LANES)
-fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(subgroup_id) subgroup: u32,
+    @builtin(num_subgroups) subgroups: u32,
+    @builtin(subgroup_invocation_id) sublane: u32,
+    @builtin(subgroup_size) lanes: u32,
+) {
+    let at = Place(subgroup * lanes + sublane, subgroup, subgroups, sublane);
+    let lane = at.lane;
     let place = group.y * GROUPS_ACROSS + group.x;
     let slot = 1u + min(place, active_blocks[0] - 1u);
     let cell = slot * 64u + lane;
-    let scanned = scan(lane, vec3<u32>(cell_count[cell], 0u, 0u));
+    let scanned = scan(at, vec3<u32>(cell_count[cell], 0u, 0u));
     let start = block_start[slot] + scanned.before.x;
     cell_start[cell] = start;
     cell_end[cell] = start + select(cell_count[cell], 0u, atomicLoad(&control.window) != 0u);

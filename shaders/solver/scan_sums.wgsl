@@ -5,14 +5,22 @@
 @group(0) @binding(2) var<storage, read_write> chunk_sums: array<vec3<u32>>;
 
 @compute @workgroup_size(SCAN_LANES)
-fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(subgroup_id) subgroup: u32,
+    @builtin(num_subgroups) subgroups: u32,
+    @builtin(subgroup_invocation_id) sublane: u32,
+    @builtin(subgroup_size) lanes: u32,
+) {
+    let at = Place(subgroup * lanes + sublane, subgroup, subgroups, sublane);
+    let lane = at.lane;
     let total = params.blocks.x * params.blocks.y * params.blocks.z * params.layers;
     let first = (group.x * SCAN_LANES + lane) * SCAN_RUN;
     var sum = vec3<u32>(0u);
     for (var k = first; k < min(first + SCAN_RUN, total); k++) {
         sum += worth(block_info[k]);
     }
-    let scanned = scan(lane, sum);
+    let scanned = scan(at, sum);
     if (lane == 0u) {
         chunk_sums[group.x] = scanned.total;
     }

@@ -39,13 +39,17 @@ fn young(mu: f32, lambda: f32) -> f32 {
     return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
 }
 
-// What compression waves run on: lambda + 2 mu, more where a law stiffens.
-fn wave_modulus(s: Substance, history: f32, mu: f32, lambda: f32) -> f32 {
-    let passive = lambda + 2.0 * mu;
+// What bounds a substep: dt <= cfl cell / (sqrt(this / density) + |v|). More where a law stiffens.
+//
+// A particle alone on its nodes swings fastest when it breathes, with the square of the angular frequency
+// 4 (3 lambda + 2 mu) / (density cell^2); many particles swing no faster than the fastest of them would alone (Irons
+// and Treharne 1971). So dt <= cell sqrt(density / (3 lambda + 2 mu)) is stable, of which BREATH is taken.
+fn step_modulus(s: Substance, history: f32, mu: f32, lambda: f32) -> f32 {
+    let passive = BREATHING * (3.0 * lambda + 2.0 * mu);
     switch (s.kind) {
         case SNOW: { return passive * snow_stiffening(s, history); }
-        // A fibre that pulls with E a adds as much to the stiffness along it; a is at most 1.
-        case MUSCLE: { return passive + young(mu, lambda); }
+        // A fibre that pulls with E a adds twice that to the stiffness along it; a is at most 1.
+        case MUSCLE: { return passive + 2.0 * BREATHING * young(mu, lambda); }
         // Shear that relaxes within a substep hardly stiffens.
         case LIQUID: { return lambda * (1.0 + 4.0 / 3.0 * s.values[0] / (s.values[0] + lambda * USUAL_STEP_S)); }
         default: { return passive; }

@@ -18,28 +18,49 @@ fn flow_at(node: u32) -> vec3<f32> {
     return vec3<f32>(flow_x[node], flow_y[node], flow_z[node]);
 }
 
-// Adds a row of three nodes along x, at a distance along y and z.
-fn with_row(sum: Gathered, node: u32, weights: vec3<f32>, x: f32, y: f32, z: f32) -> Gathered {
-    let a = flow_at(node) * weights.x;
+// Sums over a row of nodes: what they hold times the weights, and that times the nodes' number in the row.
+struct InRow {
+    all: vec3<f32>,
+    along: vec3<f32>,
+}
+
+fn in_row(node: u32, weights: vec3<f32>) -> InRow {
     let b = flow_at(node + 1u) * weights.y;
-    let c = flow_at(node + 2u) * weights.z;
-    let v = a + b + c;
-    return Gathered(sum.v + v, sum.gradient + mat3x3<f32>(b + 2.0 * c - v * x, v * y, v * z));
+    let c = flow_at(node + 2u);
+    return InRow(flow_at(node) * weights.x + b + c * weights.z, b + c * (2.0 * weights.z));
 }
 
-// Adds a slab of three rows.
-fn with_slab(sum: Gathered, node: u32, w: Weights, share: f32, place: vec3<f32>, z: f32) -> Gathered {
-    let low = with_row(sum, node, w.x * (w.y.x * share), place.x, -place.y, z);
-    let middle = with_row(low, node + TILE_ROW, w.x * (w.y.y * share), place.x, 1.0 - place.y, z);
-    return with_row(middle, node + 2u * TILE_ROW, w.x * (w.y.z * share), place.x, 2.0 - place.y, z);
+// The same over a slab of three rows, along x and y.
+struct InSlab {
+    all: vec3<f32>,
+    along_x: vec3<f32>,
+    along_y: vec3<f32>,
 }
 
-// As `gather`, from the tile. Written out: a loop stays a loop.
+fn in_slab(node: u32, w: Weights) -> InSlab {
+    let low = in_row(node, w.x);
+    let middle = in_row(node + TILE_ROW, w.x);
+    let high = in_row(node + 2u * TILE_ROW, w.x);
+    let b = middle.all * w.y.y;
+    return InSlab(
+        low.all * w.y.x + b + high.all * w.y.z,
+        low.along * w.y.x + middle.along * w.y.y + high.along * w.y.z,
+        b + high.all * (2.0 * w.y.z),
+    );
+}
+
+// As `gather`, from the tile, an axis after the other. Written out: a loop stays a loop.
 fn gather_tile(place: vec3<f32>, start: u32) -> Gathered {
     let w = spline(place);
-    let low = with_slab(Gathered(vec3<f32>(0.0), mat3x3<f32>()), start, w, w.z.x, place, -place.z);
-    let middle = with_slab(low, start + TILE_SLAB, w, w.z.y, place, 1.0 - place.z);
-    return with_slab(middle, start + 2u * TILE_SLAB, w, w.z.z, place, 2.0 - place.z);
+    let low = in_slab(start, w);
+    let middle = in_slab(start + TILE_SLAB, w);
+    let high = in_slab(start + 2u * TILE_SLAB, w);
+    let b = middle.all * w.z.y;
+    let v = low.all * w.z.x + b + high.all * w.z.z;
+    let x = low.along_x * w.z.x + middle.along_x * w.z.y + high.along_x * w.z.z;
+    let y = low.along_y * w.z.x + middle.along_y * w.z.y + high.along_y * w.z.z;
+    let z = b + high.all * (2.0 * w.z.z);
+    return Gathered(v, mat3x3<f32>(x - v * place.x, y - v * place.y, z - v * place.z));
 }
 
 // Of a particle of the item; one that left the tile asks the grid itself.

@@ -2,10 +2,14 @@
 // Each contribution is rounded alone, dithered (a rounding to nearest would brake what moves slowly) by a
 // number that depends on particle, node and substep, so that no sum depends on who comes first.
 
-// Momentum x, y, z and mass of each node.
-var<workgroup> heap: array<atomic<i32>, 4u * TILE_NODES>;
+// Momentum x, y, z and mass of each node. Apart, so that one check of the index does for all.
+var<workgroup> heap_x: array<atomic<i32>, TILE_NODES>;
+var<workgroup> heap_y: array<atomic<i32>, TILE_NODES>;
+var<workgroup> heap_z: array<atomic<i32>, TILE_NODES>;
+var<workgroup> heap_mass: array<atomic<i32>, TILE_NODES>;
 // Contact marks of each node: of the ground, of the other colliders.
-var<workgroup> touched: array<atomic<u32>, 2u * TILE_NODES>;
+var<workgroup> touched_ground: array<atomic<u32>, TILE_NODES>;
+var<workgroup> touched_solid: array<atomic<u32>, TILE_NODES>;
 
 // What a particle hands to the grid.
 struct Load {
@@ -14,7 +18,9 @@ struct Load {
     spread: mat3x3<f32>,
     // In quanta of 2^shift.w units.
     mass: f32,
-    shift: vec4<u32>,
+    // Units in a quantum of momentum and of mass, and what brings a rounded number of quanta to zero.
+    quantum: vec2<i32>,
+    zero: vec2<i32>,
     seed: u32,
     ground: Near,
     solid: Near,
@@ -41,7 +47,8 @@ fn load_of(x: vec3<f32>, mass: f32, v: vec3<f32>, affine: mat3x3<f32>, label: ve
     }
     let shift = vec2<u32>(quantum(widest), quantum(units)) & vec2<u32>(31u);
     let per_quantum = bitcast<vec2<f32>>((vec2<u32>(127u) - shift) << vec2<u32>(23u));
-    return Load(pull * per_quantum.x, spread * per_quantum.x, units * per_quantum.y, shift.xxxy, seed, ground, solid);
+    let quanta = vec2<i32>(1) << shift;
+    return Load(pull * per_quantum.x, spread * per_quantum.x, units * per_quantum.y, quanta, quanta * -0x4b400000, seed, ground, solid);
 }
 
 // From a node's noise to that of the next in its row.
@@ -56,47 +63,42 @@ fn noise_at(seed: u32, number: u32) -> u32 {
 
 // To a whole number of quanta, up or down by chance so that the mean is right. 1.5 * 2^23 has no room for
 // a fraction: what is added to it is rounded and stands in its lowest bits, without a conversion.
-fn rounded(pull: vec4<f32>, weight: f32, noise: u32, shift: vec4<u32>) -> vec4<i32> {
-    let bits = vec4<u32>(noise, noise >> 8u, noise << 8u, noise << 16u) & vec4<u32>(0x7fffffu);
-    let dither = bitcast<vec4<f32>>(bits | vec4<u32>(0x3f800000u));
-    let amount = (pull * weight - vec4<f32>(1.5)) + dither;
-    let whole = bitcast<vec4<i32>>(amount + vec4<f32>(params.rounder)) - vec4<i32>(0x4b400000);
-    return whole << shift;
+fn rounded(l: Load, pull: vec3<f32>, weight: f32, noise: u32) -> vec4<i32> {
+    let dither = bitcast<f32>((noise & 0x7fffffu) | 0x3f800000u) - 1.5;
+    let amount = vec4<f32>(pull, l.mass) * weight + vec4<f32>(dither);
+    return bitcast<vec4<i32>>(amount + vec4<f32>(params.rounder)) * l.quantum.xxxy + l.zero.xxxy;
 }
 
-fn drop_node(node: u32, pull: vec4<f32>, weight: f32, noise: u32, shift: vec4<u32>) {
-    let whole = rounded(pull, weight, noise, shift);
-    atomicAdd(&heap[node], whole.x);
-    atomicAdd(&heap[TILE_NODES + node], whole.y);
-    atomicAdd(&heap[2u * TILE_NODES + node], whole.z);
-    atomicAdd(&heap[3u * TILE_NODES + node], whole.w);
+fn drop_node(l: Load, node: u32, pull: vec3<f32>, weight: f32, noise: u32) {
+    let whole = rounded(l, pull, weight, noise);
+    atomicAdd(&heap_x[node], whole.x);
+    atomicAdd(&heap_y[node], whole.y);
+    atomicAdd(&heap_z[node], whole.z);
+    atomicAdd(&heap_mass[node], whole.w);
 }
 
-// A row of three nodes along x, of which `first` is what the particle's momentum and mass are there.
-fn drop_row(l: Load, node: u32, first: vec4<f32>, weights: vec3<f32>, number: u32) {
-    let along = vec4<f32>(l.spread[0], 0.0);
+// A row of three nodes along x, of which `first` is what the particle's momentum is there.
+fn drop_row(l: Load, node: u32, first: vec3<f32>, weights: vec3<f32>, number: u32) {
     let noise = noise_at(l.seed, number);
-    drop_node(node, first, weights.x, noise, l.shift);
-    drop_node(node + 1u, first + along, weights.y, noise * NEXT_NOISE, l.shift);
-    drop_node(node + 2u, first + 2.0 * along, weights.z, noise * THIRD_NOISE, l.shift);
+    drop_node(l, node, first, weights.x, noise);
+    drop_node(l, node + 1u, first + l.spread[0], weights.y, noise * NEXT_NOISE);
+    drop_node(l, node + 2u, first + 2.0 * l.spread[0], weights.z, noise * THIRD_NOISE);
 }
 
 // A slab of three rows.
-fn drop_slab(l: Load, node: u32, first: vec4<f32>, w: Weights, share: f32, number: u32) {
-    let along = vec4<f32>(l.spread[1], 0.0);
+fn drop_slab(l: Load, node: u32, first: vec3<f32>, w: Weights, share: f32, number: u32) {
     drop_row(l, node, first, w.x * (w.y.x * share), number);
-    drop_row(l, node + TILE_ROW, first + along, w.x * (w.y.y * share), number + 1u);
-    drop_row(l, node + 2u * TILE_ROW, first + 2.0 * along, w.x * (w.y.z * share), number + 2u);
+    drop_row(l, node + TILE_ROW, first + l.spread[1], w.x * (w.y.y * share), number + 1u);
+    drop_row(l, node + 2u * TILE_ROW, first + 2.0 * l.spread[1], w.x * (w.y.z * share), number + 2u);
 }
 
 // Written out: a loop stays a loop.
 fn drop_in_tile(l: Load, place: vec3<f32>, start: u32) {
     let w = spline(place);
-    let first = vec4<f32>(l.pull - l.spread * place, l.mass);
-    let along = vec4<f32>(l.spread[2], 0.0);
+    let first = l.pull - l.spread * place;
     drop_slab(l, start, first, w, w.z.x, 0u);
-    drop_slab(l, start + TILE_SLAB, first + along, w, w.z.y, 3u);
-    drop_slab(l, start + 2u * TILE_SLAB, first + 2.0 * along, w, w.z.z, 6u);
+    drop_slab(l, start + TILE_SLAB, first + l.spread[2], w, w.z.y, 3u);
+    drop_slab(l, start + 2u * TILE_SLAB, first + 2.0 * l.spread[2], w, w.z.z, 6u);
     if ((l.ground.mark | l.solid.mark) == 0u) {
         return;
     }
@@ -107,10 +109,10 @@ fn drop_in_tile(l: Load, place: vec3<f32>, start: u32) {
         let ground = mark_on(l.ground, d);
         let solid = mark_on(l.solid, d);
         if (ground != 0u) {
-            atomicMax(&touched[node], ground);
+            atomicMax(&touched_ground[node], ground);
         }
         if (solid != 0u) {
-            atomicMax(&touched[TILE_NODES + node], solid);
+            atomicMax(&touched_solid[node], solid);
         }
     }
 }
@@ -136,7 +138,7 @@ fn drop_on_grid(l: Load, s: Stencil) {
         let steps = vec3<f32>(vec3<u32>(x, k / 3u % 3u, k / 9u));
         let pull = ((first + steps.z * l.spread[2]) + steps.y * l.spread[1]) + steps.x * l.spread[0];
         let noise = noise_at(l.seed, k / 3u) * select(select(THIRD_NOISE, NEXT_NOISE, x == 1u), 1u, x == 0u);
-        let whole = rounded(vec4<f32>(pull, l.mass), pick(r.weights, x), noise, l.shift);
+        let whole = rounded(l, pull, pick(r.weights, x), noise);
         let d = steps - s.place;
         add_to_grid(pick_offset(r.nodes, x), whole, mark_on(l.ground, d), mark_on(l.solid, d));
     }
@@ -159,14 +161,9 @@ fn hand_over(item: Item, x: vec3<f32>, tag: u32, l: Load) {
 fn unload(lane: u32) {
     for (var k = lane; k < 512u; k += TILE_LANES) {
         let at = in_tile(k);
-        let whole = vec4<i32>(
-            atomicLoad(&heap[at]),
-            atomicLoad(&heap[TILE_NODES + at]),
-            atomicLoad(&heap[2u * TILE_NODES + at]),
-            atomicLoad(&heap[3u * TILE_NODES + at]),
-        );
-        let ground = atomicLoad(&touched[at]);
-        let solid = atomicLoad(&touched[TILE_NODES + at]);
+        let whole = vec4<i32>(atomicLoad(&heap_x[at]), atomicLoad(&heap_y[at]), atomicLoad(&heap_z[at]), atomicLoad(&heap_mass[at]));
+        let ground = atomicLoad(&touched_ground[at]);
+        let solid = atomicLoad(&touched_solid[at]);
         if (any(whole != vec4<i32>(0)) || (ground | solid) != 0u) {
             add_to_grid(stored_in_tile(k), whole, ground, solid);
         }

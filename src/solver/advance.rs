@@ -1,7 +1,7 @@
 //! Going on in time: segments of whole substeps, watched, rolled back and run again.
 
 use super::budget;
-use super::constants::PUSH_SHARE;
+use super::constants::{LEAST_SPEED_M_S, PUSH_SHARE};
 use super::core::Solver;
 use super::fields::Fields;
 use super::grid::GridBuffers;
@@ -139,6 +139,7 @@ impl Solver {
                 plan = Plan { substeps: (at_once as u32).max(1), last_dt_s: plan.dt_s, ..plan };
                 until_s = self.time_s + f64::from(plan.substeps) * f64::from(plan.dt_s);
             }
+            self.params.momentum_floor = self.heaviest_kg * LEAST_SPEED_M_S.max(acceleration_m_s2 * plan.dt_s);
             self.ask_fields_at(until_s);
             let reach_m = (speed_m_s * (until_s - self.time_s)) as f32;
             let margin = ((reach_m / self.settings.cell_m).ceil() as i32 + self.params.slack + 3) * tries.room;
@@ -281,7 +282,7 @@ impl Solver {
         self.settings.gravity_m_s2.length() + driven
     }
 
-    /// Substeps from physics: dt <= C dx / (c + |v|), equal parts of the whole frame, of which a cut
+    /// Substeps from physics: dt <= cfl cell / (c + |v|), equal parts of the whole frame, of which a cut
     /// takes the first ones and a remainder.
     pub(super) fn plan(&self, seen: &Watch, until_s: f64, frame_end_s: f64, acceleration_m_s2: f32, halvings: u32) -> Plan {
         let cell_m = f64::from(self.settings.cell_m);

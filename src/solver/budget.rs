@@ -5,7 +5,7 @@
 //! stiffness too. So what would need more substeps than a frame may have is softened to what they carry,
 //! and that is said.
 
-use super::constants::PACKING_LEAST;
+use super::constants::{BREATHING, PACKING_LEAST};
 use super::sph;
 use super::state::ParticleState;
 use super::substance::Substance;
@@ -19,9 +19,10 @@ const SOFTER: f32 = 0.25;
 /// Substeps that a frame may take at all: a pin that is faster than this passes through thousands of cells in it.
 pub(super) const SUBSTEPS_MOST: f64 = 200_000.0;
 
-/// Speed of compression waves by the moduli alone, sqrt((lambda + 2 mu) / rho).
+/// Speed that bounds a substep, by the moduli alone; see `step_modulus` in `substance.wgsl`.
 fn wave_speed_m_s(s: &ParticleState) -> f32 {
-    ((s.lambda_pa + 2.0 * s.mu_pa) * s.volume_m3 / s.mass_kg).sqrt()
+    let modulus_pa = if s.mu_pa > 0.0 { BREATHING * (3.0 * s.lambda_pa + 2.0 * s.mu_pa) } else { s.lambda_pa };
+    (modulus_pa * s.volume_m3 / s.mass_kg).sqrt()
 }
 
 /// Young's modulus from Lamé's two.

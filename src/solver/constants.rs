@@ -15,6 +15,12 @@ pub const SCAN_LANES: u32 = 64;
 pub const SCAN_RUN: u32 = 16;
 /// Workgroups along x of a pass over active blocks; more go along y.
 pub const GROUPS_ACROSS: u32 = 32_768;
+/// Cells that what is fastest may go in a substep.
+pub const CFL: f32 = 0.4;
+/// Share that a substep takes of what is stable for a particle alone on its nodes.
+pub const BREATH: f32 = 0.7;
+/// Modulus that bounds a substep, over the bulk modulus times three: see `step_modulus` in `substance.wgsl`.
+pub const BREATHING: f32 = (CFL / BREATH) * (CFL / BREATH);
 /// Newton steps of the polar decomposition.
 pub const POLAR_STEPS: u32 = 5;
 /// det F below which the polar decomposition takes the form that survives inversion.
@@ -45,6 +51,8 @@ pub const SUM_LIMIT: f32 = 536_870_912.0;
 /// Bits of the heaviest particle's mass, and of the largest momentum that a particle hands on, in the
 /// fixed point of the grid: 32 of them fit a node, four times what a body at rest brings together.
 pub const FIXED_BITS: u32 = 26;
+/// Scales of momentum are made for at least this speed, m/s, and for what a substep brings to what is at rest.
+pub const LEAST_SPEED_M_S: f32 = 1e-3;
 /// Bits given up at each retry after a node held more.
 pub const FIXED_BITS_RETREAT: u32 = 2;
 /// Cells that a particle may travel between two sorts.
@@ -261,6 +269,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("SCAN_LANES", Constant::U32(SCAN_LANES)),
         ("SCAN_RUN", Constant::U32(SCAN_RUN)),
         ("GROUPS_ACROSS", Constant::U32(GROUPS_ACROSS)),
+        ("BREATHING", Constant::F32(BREATHING)),
         ("POLAR_STEPS", Constant::U32(POLAR_STEPS)),
         ("FLAT", Constant::F32(FLAT)),
         ("FLAT_STEPS", Constant::U32(FLAT_STEPS)),

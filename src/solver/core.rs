@@ -1,7 +1,9 @@
 //! The solver itself: its particles, its surroundings, and what may be done to them between frames.
 
 use super::budget;
-use super::constants::{BLOCK_SLACK_CELLS, DEALT, FEW_PARTICLES, FIXED_BITS, PUSH_SHARE, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP};
+use super::constants::{
+    BLOCK_SLACK_CELLS, DEALT, FEW_PARTICLES, FIXED_BITS, LEAST_SPEED_M_S, PUSH_SHARE, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP,
+};
 use super::encounter::{Encounter, Layers};
 use super::fields::Fields;
 use super::grid::{GROUPS_MOST, GridBuffers, Window, params_buffer};
@@ -156,8 +158,7 @@ impl Solver {
             rounder: 12_582_912.0,
             speed_most: budget::fastest_m_s(&settings),
             seed: (settings.seed ^ settings.seed >> 32) as u32,
-            // Scales are made for at least a millimetre a second.
-            momentum_floor: heaviest_kg * 1e-3,
+            momentum_floor: heaviest_kg * LEAST_SPEED_M_S,
             ..Default::default()
         };
         params.push_m = PUSH_SHARE * params.slack as f32 * settings.cell_m;

@@ -62,7 +62,7 @@ passes! {
     count: ["cell", "count"] [Read, Read, Read, Write] 0;
     scan_cells: ["control", "scan", "scan_cells"] [Read, Read, Read, Read, Write, Write, Write] 0;
     scatter: ["cell", "scatter"] [Read, Read, Read, Write, Read, Write] 0;
-    order: ["control", "order"] [Read, Read, Read, Read, Write, Write, Read, Read, Write] 0;
+    order: ["control", "order"] [Read, Read, Read, Read, Write, Write, Read, Read, Write, Read] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
     grid: ["control", "substep", "contact", "node", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;

@@ -1,5 +1,6 @@
 //! What the solver is given and what it answers.
 
+use super::constants::CFL;
 use super::substance::Substance;
 use crate::gpu::GpuError;
 use crate::spec::ColliderShape;
@@ -172,7 +173,7 @@ pub struct Settings {
     pub seed: u64,
     /// Substeps that a fiftieth of a second, or a shorter frame, may take for the sake of stiffness.
     pub substeps_most: u32,
-    /// Share of the acoustic limit that a substep takes: dt <= cfl cell / (c + |v|).
+    /// Cells that what is fastest may go in a substep: dt <= cfl cell / (c + |v|), c from `step_modulus` in `substance.wgsl`.
     pub cfl: f32,
 }
 
@@ -192,7 +193,7 @@ impl Settings {
             frame_s: 0.02,
             seed: 1,
             substeps_most: 4000,
-            cfl: 0.4,
+            cfl: CFL,
         }
     }
 }

@@ -76,7 +76,7 @@ fn value(bits: u32) -> f32 {
 pub(super) struct Watch {
     /// Fastest particle now.
     pub speed_m_s: f32,
-    /// Fastest wave that any particle can carry now.
+    /// Largest speed that bounds a substep, by what particles are made of now.
     pub wave_speed_m_s: f32,
     /// Fastest particle at any substep of the segment.
     pub peak_speed_m_s: f32,
@@ -106,8 +106,9 @@ pub(super) struct Watch {
 const J_TRIP: (f32, f32) = (-1.0, 70.0);
 /// Cells that a particle may move in one substep.
 const STEP_CELLS: f32 = 0.6;
-/// Cells that a wave may run in one substep: a law that stiffened meanwhile takes smaller ones.
-const WAVE_CELLS: f32 = 0.75;
+/// Cells that the speed which bounds substeps may come to in one, where 0.57 is stable for any particle and 0.72 to 0.8 for
+/// packed ones: a law that stiffened meanwhile takes smaller ones.
+const WAVE_CELLS: f32 = 0.6;
 
 impl Watch {
     /// What of a failed segment may guide the next try: a speed that is none, or beyond all that is followed, is held.

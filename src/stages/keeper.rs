@@ -55,8 +55,7 @@ impl Keeper {
 
     fn join(&mut self) -> Result<(), EngineError> {
         self.sender = None;
-        // A panic on that thread has already ended the process through the panic hook.
-        self.thread.take().map_or(Ok(()), |thread| thread.join().unwrap_or(Ok(())))
+        ended(self.thread.take())
     }
 }
 
@@ -67,7 +66,17 @@ impl Drop for Keeper {
     }
 }
 
-fn write(store: &Store, mut album: Option<Album>, incoming: &Receiver<Item>) -> Result<(), EngineError> {
+/// A segment on its way to the disk.
+type Ending = Option<JoinHandle<Result<(), EngineError>>>;
+
+fn write(store: &Store, album: Option<Album>, incoming: &Receiver<Item>) -> Result<(), EngineError> {
+    let mut ending: Ending = None;
+    let written = write_all(store, album, incoming, &mut ending);
+    written.and(ended(ending))
+}
+
+/// Writes what comes. A segment that ended goes to the disk while the next one is written.
+fn write_all(store: &Store, mut album: Option<Album>, incoming: &Receiver<Item>, ending: &mut Ending) -> Result<(), EngineError> {
     // The motion of the segment that has not ended.
     let mut open: Option<(EntryWriter, BlobWriter)> = None;
     for item in incoming {
@@ -84,12 +93,22 @@ fn write(store: &Store, mut album: Option<Album>, incoming: &Receiver<Item>) -> 
                 };
                 append(store, blob, &frame)?;
             }
-            Item::End(segment, meta, state) => segments::keep(store, &segment, open.take(), &meta, &state.bytes()?)?,
+            Item::End(segment, meta, state) => {
+                ended(ending.take())?;
+                let (store, begun) = (store.clone(), open.take());
+                *ending = Some(std::thread::spawn(move || segments::keep(&store, &segment, begun, &meta, &state.bytes()?)));
+            }
             Item::Picture(png) => album.as_mut().map_or(Ok(()), |album| album.add(&png))?,
             Item::Whole => album.take().map_or(Ok(()), Album::finish)?,
         }
     }
     Ok(())
+}
+
+/// Waits for a thread that writes.
+fn ended(thread: Ending) -> Result<(), EngineError> {
+    // A panic on that thread has already ended the process through the panic hook.
+    thread.map_or(Ok(()), |thread| thread.join().unwrap_or(Ok(())))
 }
 
 fn append(store: &Store, blob: &mut BlobWriter, bytes: &[u8]) -> Result<(), EngineError> {

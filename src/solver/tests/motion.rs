@@ -58,9 +58,9 @@ fn a_cut_changes_nothing_before_itself() {
     let mut whole = solver(Settings::new(0.05), &particles);
     let mut cut = solver(Settings::new(0.05), &particles);
     let dt = whole.advance(0.02, &stop).expect("an advance").dt_max_s;
-    whole.advance(0.02 + 4.0 * dt, &stop).expect("an advance");
+    whole.advance(0.02 + 3.0 * dt, &stop).expect("an advance");
     cut.advance(0.02, &stop).expect("an advance");
-    cut.advance(0.02 + 4.0 * dt, &stop).expect("an advance");
+    cut.advance(0.02 + 3.0 * dt, &stop).expect("an advance");
     assert!(whole.checkpoint().expect("a checkpoint") == cut.checkpoint().expect("a checkpoint"));
     let late = cut.advance(0.0305, &stop).expect("an advance");
     assert!(late.dt_min_s < late.dt_max_s, "the cut took a part of a substep: {late:?}");

@@ -4,6 +4,7 @@ use super::laws::all_laws;
 use super::{block, solver};
 use crate::Stop;
 use crate::gpu::{Gpu, Recording};
+use crate::solver::constants::BREATHING;
 use crate::solver::substance::Substance;
 use crate::solver::validate::append;
 use crate::solver::{Placement, Plane, Settings, Solver};
@@ -82,10 +83,11 @@ fn waves_run_faster_where_a_law_stiffens() {
     let mut solver = side_by_side(&laws, weightless());
     let snow = laws.len() - 1;
     let modulus = |law: &Substance| {
-        let passive = 2e4 * 0.7 / (1.3 * 0.4);
+        // 3 lambda + 2 mu = E / (1 - 2 nu).
+        let passive = BREATHING * 2e4 / 0.4;
         match law {
             Substance::Snow { hardening, .. } => passive * (hardening * 0.2).exp(),
-            Substance::Muscle { .. } => passive + 2e4,
+            Substance::Muscle { .. } => passive + BREATHING * 4e4,
             _ => passive,
         }
     };

@@ -1,6 +1,6 @@
 //! The laws, in f64 and by other means than the shaders': eigenvectors of F F^T, closed forms.
 
-use super::material::{kirchhoff, polar};
+use super::material::kirchhoff;
 use crate::solver::constants::{
     LIQUID_J_LEAST, LIQUID_J_MOST, LIQUID_SHOWN_S, LIQUID_STRAIN_MOST, LOOSE_MOST, PACKING_LEAST, PACKING_MOST, RECOIL, STRETCH_LEAST, STRETCH_MOST,
     YIELD_FLOOR,
@@ -204,5 +204,5 @@ pub fn shown(substance: &Substance, old: DMat3, gradient: DMat3, dt_s: f64) -> D
     let f = old + gradient * old * dt_s;
     let (s, axes) = stretches(f);
     let f = restretched(f, axes, s, each(s, |s| s.clamp(f64::from(least), f64::from(most))));
-    if substance.is_liquid() { f + (polar(f) - f) * (dt_s / f64::from(LIQUID_SHOWN_S)).min(1.0) } else { f }
+    if substance.is_liquid() { f + (f.inverse().transpose() - f) * (0.5 * (dt_s / f64::from(LIQUID_SHOWN_S)).min(1.0)) } else { f }
 }
