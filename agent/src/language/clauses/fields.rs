@@ -1,11 +1,11 @@
 //! Fields: wind, swirls, blasts, drag of air and water, swinging and shaking, motors.
 
-use super::super::clause::Clause;
+use super::super::clause::{Clause, HARD};
 use super::super::directions::Heading;
 use super::super::draft::{Draft, Refusal};
 use super::super::numbers::Dimension;
 use super::super::say;
-use super::super::sense::{Direction, Field, Sense, Verb};
+use super::super::sense::{Direction, Field, Property, Sense, Verb};
 use super::motion::{axis_name, lasts, strength, take_side};
 use glam::DVec3;
 use phystalk::spec::expression::{Kind, parse};
@@ -53,6 +53,9 @@ pub fn understand(field: Field, clause: &mut Clause, draft: &mut Draft) -> Resul
     }
     if !aimed && clause.has(|s| matches!(s, Sense::Direction(Direction::Towards | Direction::Away))) {
         return Err("that goes to or from its own middle; \"pull it towards the camera\" moves it there".to_owned());
+    }
+    if clause.has(|s| *s == Sense::Overhead) {
+        return Err("\"hang it from the top and push it to the left\" swings it so".to_owned());
     }
     let lifts = field == Field::Swirl && clause.phrases().iter().any(|p| p.sense == Sense::Verb(Verb::Lift));
     let ask = Ask {
@@ -171,6 +174,11 @@ fn to_and_fro(unit: DVec3, amount: f64, angular: f64, from_s: f64) -> String {
 /// Wind, as moving air.
 pub fn wind(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Option<f64>) -> Result<(), Refusal> {
     let speed = clause.take_measure(Dimension::Speed).map(|(v, _)| v);
+    // "A light breeze" weighs nothing, and "a short gust" is not how long the run lasts.
+    let light = clause.take(|s| matches!(s, Sense::Quality(Property::Density, sign, _) if *sign < 0.0).then_some(1.0 / HARD)).unwrap_or(1.0);
+    if clause.has(|s| matches!(s, Sense::Quality(Property::Duration, ..))) {
+        return Err("how long does it blow? \"a gust from the left at 1 s for 0.3 s\"".to_owned());
+    }
     let from_start = clause.has(|s| matches!(s, Sense::Span(..)));
     let timed = at_s.is_some() || clause.has(|s| matches!(s, Sense::For(_) | Sense::Until(_) | Sense::Span(..)));
     let span = lasts(clause, at_s)?;
@@ -178,6 +186,7 @@ pub fn wind(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Opt
     let mut directions = clause.take_directions();
     directions.extend(take_side(clause));
     let (strength, scale) = strength(Verb::Blow, clause);
+    let strength = light * strength;
     for &object in objects {
         let name = draft.name(object);
         // "A stronger wind" is one that is there, made stronger.

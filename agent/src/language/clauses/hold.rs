@@ -62,6 +62,8 @@ pub fn release(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
                 }
             }
             When::At(_) | When::Impact => draft.happen(object, None, when, "release", |event| event.release = true, |event| event.release),
+            // "Hold it for half a second, then let go": it is let go then.
+            When::Start if held_for_a_while(draft, &name) => continue,
             When::Start => {
                 draft.spec.pins.retain(|p| p.object != name);
                 draft.spec.events.retain(|e| !(e.object == name && (e.freeze || e.release)));
@@ -72,6 +74,12 @@ pub fn release(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
         draft.gloss.push(format!("{name} is let go{}", when.said()));
     }
     Ok(())
+}
+
+/// Whether all that holds an object began in this request, and ends at a time.
+fn held_for_a_while(draft: &Draft, name: &str) -> bool {
+    let mut pins = draft.spec.pins.iter().filter(|p| p.object == name).peekable();
+    pins.peek().is_some() && pins.all(|p| p.to_s != Until::End && !draft.context.spec.pins.contains(p))
 }
 
 /// "let go of the top at 1 s": what holds that part, and nothing else.
@@ -98,7 +106,8 @@ fn release_part(part: Part, when: When, draft: &mut Draft, object: usize) -> Res
 /// denies is taken already.
 pub fn cancel(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let verb = clause.take_verb(|v| !matches!(v, Verb::Stop));
-    if let Some(Verb::Orbit | Verb::Look | Verb::Zoom(_)) = verb {
+    if matches!(verb, Some(Verb::Orbit | Verb::Look | Verb::Zoom(_))) || clause.has(|s| *s == Sense::Camera) {
+        clause.take_sense(&Sense::Camera);
         let mut camera = draft.camera();
         camera.orbit_deg_s = 0.0;
         draft.spec.camera = phystalk::spec::Auto::Value(camera);

@@ -94,6 +94,13 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
         adjust::understand(clause, draft)?;
     }
     world::time(clause, draft)?;
+    let corrects = draft.corrects || clause.has(|s| *s == Sense::Instead);
+    if corrects
+        && clause.has(|s| matches!(s, Sense::View(_)))
+        && draft.context.previous_spec.is_some_and(|before| before.forces != draft.context.spec.forces)
+    {
+        return Err("what comes from there? \"wind from the right\", \"look from the right\"".to_owned());
+    }
     if clause.has(|s| matches!(s, Sense::View(_))) {
         camera::understand(clause, draft)?;
     }
