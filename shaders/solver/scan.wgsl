@@ -3,13 +3,17 @@
 // Sums of the subgroups.
 var<workgroup> parts: array<vec3<u32>, SCAN_LANES>;
 
-// Where a thread is in its workgroup and in its subgroup.
+// Where a thread is: which subgroup of how many, and its place in that.
 struct Place {
-    lane: u32,
-    // Which subgroup, and how many there are.
-    subgroup: u32,
-    subgroups: u32,
-    sublane: u32,
+    @builtin(subgroup_id) subgroup: u32,
+    @builtin(num_subgroups) subgroups: u32,
+    @builtin(subgroup_invocation_id) sublane: u32,
+    @builtin(subgroup_size) lanes: u32,
+}
+
+// Its place in the workgroup, such that those of a subgroup follow each other.
+fn lane_of(at: Place) -> u32 {
+    return at.subgroup * at.lanes + at.sublane;
 }
 
 struct Scanned {

@@ -19,16 +19,8 @@ fn groups_for(number: u32) -> vec4<u32> {
 }
 
 @compute @workgroup_size(SCAN_LANES)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(subgroup_id) subgroup: u32,
-    @builtin(num_subgroups) subgroups: u32,
-    @builtin(subgroup_invocation_id) sublane: u32,
-    @builtin(subgroup_size) lanes: u32,
-) {
-    let at = Place(subgroup * lanes + sublane, subgroup, subgroups, sublane);
-    let lane = at.lane;
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>, at: Place) {
+    let lane = lane_of(at);
     var earlier = vec3<u32>(0u);
     for (var k = lane; k < group.x; k += SCAN_LANES) {
         earlier += chunk_sums[k];

@@ -11,15 +11,8 @@
 @group(0) @binding(6) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(SCAN_LANES)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(subgroup_id) subgroup: u32,
-    @builtin(num_subgroups) subgroups: u32,
-    @builtin(subgroup_invocation_id) sublane: u32,
-    @builtin(subgroup_size) lanes: u32,
-) {
-    let at = Place(subgroup * lanes + sublane, subgroup, subgroups, sublane);
-    let lane = at.lane;
+fn main(@builtin(workgroup_id) group: vec3<u32>, at: Place) {
+    let lane = lane_of(at);
     let place = group.y * GROUPS_ACROSS + group.x;
     let slot = 1u + min(place, active_blocks[0] - 1u);
     let cell = slot * 64u + lane;

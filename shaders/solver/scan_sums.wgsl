@@ -5,15 +5,8 @@
 @group(0) @binding(2) var<storage, read_write> chunk_sums: array<vec3<u32>>;
 
 @compute @workgroup_size(SCAN_LANES)
-fn main(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(subgroup_id) subgroup: u32,
-    @builtin(num_subgroups) subgroups: u32,
-    @builtin(subgroup_invocation_id) sublane: u32,
-    @builtin(subgroup_size) lanes: u32,
-) {
-    let at = Place(subgroup * lanes + sublane, subgroup, subgroups, sublane);
-    let lane = at.lane;
+fn main(@builtin(workgroup_id) group: vec3<u32>, at: Place) {
+    let lane = lane_of(at);
     let total = params.blocks.x * params.blocks.y * params.blocks.z * params.layers;
     let first = (group.x * SCAN_LANES + lane) * SCAN_RUN;
     var sum = vec3<u32>(0u);
