@@ -53,6 +53,7 @@ pub use checkpoint::Checkpoint;
 pub use core::Solver;
 pub use fields::velocity_change;
 pub use impact::Sight;
+pub use obstacles::is_inside;
 pub use substance::{Activation, Flow, Substance, liquid_bulk_pa};
 pub use types::{
     Advance, Collider, Field, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError, Taut,

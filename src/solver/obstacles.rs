@@ -170,6 +170,12 @@ fn out_of(collider: &ColliderRecord, points: &[Vec3], way: Vec3) -> Option<Vec3>
     (2 * behind > points.len()).then(|| collider.normal(deepest.face, x) * -deepest.distance_m)
 }
 
+/// Whether a place is inside something solid.
+pub fn is_inside(shape: &ColliderShape, x: Vec3) -> bool {
+    let (at, shape) = geometry(shape, 0.0);
+    ColliderRecord { at, shape, surface: [0.0; 4] }.touch(x).distance_m < 0.0
+}
+
 /// Distance to the nearest surface, infinite where there is none.
 pub(super) fn distance_m(colliders: &[ColliderRecord], x: Vec3) -> f32 {
     colliders.iter().map(|c| c.touch(x).distance_m).fold(f32::INFINITY, f32::min)

@@ -3,10 +3,9 @@
 use super::Resolved;
 use super::bodies::Matter;
 use super::region::{bounds, holds};
-use crate::scene::{in_box, in_sphere};
-use crate::solver::Substance;
-use crate::spec::{Auto, ColliderShape, Event, PlaneShape, Region, Spec};
-use glam::{DVec3, Vec3};
+use crate::solver::{Substance, is_inside};
+use crate::spec::{Auto, Event, Spec};
+use glam::Vec3;
 
 /// Less of an object inside something solid is its skin.
 const SKIN: f64 = 0.02;
@@ -41,8 +40,9 @@ fn too_late(spec: &Spec, end_s: f64) -> Vec<String> {
     if asked_s - end_s > 1e-6 {
         said.push(format!("time.duration_s = {asked_s} is no whole number of frames of 1/{} s: the last one is at {end_s:.3} s", spec.time.fps));
     }
-    let late =
-        |list: &str, name: &str, at_s: f64| (at_s >= end_s).then(|| format!("{list} {name}: begins at {at_s} s, and the end is at {end_s:.3} s"));
+    let late = |list: &str, name: &str, at_s: f64| {
+        (at_s >= end_s).then(|| format!("{list} {name}: begins at {at_s} s, and the end is at {end_s:.3} s: use a longer time.duration_s"))
+    };
     said.extend(spec.events.iter().filter_map(|e| late("event", &e.name, e.at_s?)));
     said.extend(spec.forces.iter().filter_map(|f| late("force", &f.name, f.from_s)));
     said.extend(spec.pins.iter().filter_map(|p| late("pin", &p.name, p.from_s)));
@@ -74,42 +74,12 @@ fn slips_its_pins(spec: &Spec, matter: &Matter) -> Vec<String> {
 fn buried(spec: &Spec, resolved: &Resolved, points: &[Vec3]) -> Vec<(String, f64)> {
     let share = |inside: &dyn Fn(Vec3) -> bool| points.iter().filter(|x| inside(**x)).count() as f64 / points.len().max(1) as f64;
     let ground = ("the ground".to_owned(), share(&|x| f64::from(x.z) < resolved.ground_m));
-    let colliders = spec.colliders.iter().map(|c| (format!("collider {}", c.name), share(&|x| inside(&c.shape, x))));
+    let colliders = spec.colliders.iter().map(|c| (format!("collider {}", c.name), share(&|x| is_inside(&c.shape, x))));
     std::iter::once(ground).chain(colliders).filter(|(_, share)| *share > SKIN).map(|(what, share)| (what, 100.0 * share)).collect()
-}
-
-fn inside(shape: &ColliderShape, x: Vec3) -> bool {
-    match shape {
-        ColliderShape::Box(shape) => in_box(x, shape),
-        ColliderShape::Sphere(shape) => in_sphere(x, shape),
-        ColliderShape::Plane(PlaneShape { point_m, normal }) => {
-            let plane = Region::HalfSpace(PlaneShape { point_m: *point_m, normal: *normal });
-            holds(&plane, x, (Vec3::ZERO, Vec3::ZERO))
-        }
-        ColliderShape::Capsule(capsule) => {
-            let (from, to) = (DVec3::from(capsule.from_m), DVec3::from(capsule.to_m));
-            let (axis, way) = (to - from, x.as_dvec3() - from);
-            (way - axis * (way.dot(axis) / axis.length_squared().max(1e-300)).clamp(0.0, 1.0)).length() <= capsule.radius_m
-        }
-    }
 }
 
 /// An object's particles where they were captured.
 fn points<'a>(spec: &Spec, matter: &'a Matter, object: &str) -> Option<&'a [Vec3]> {
     let index = spec.objects.iter().position(|o| o.name == object)?;
     Some(&matter.particles.position_m[matter.bodies.ranges.get(index)?.clone()])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::spec::CapsuleShape;
-
-    #[test]
-    fn a_capsule_is_solid_around_its_axis_and_at_its_ends() {
-        let capsule = ColliderShape::Capsule(CapsuleShape { from_m: [0.0; 3], to_m: [0.0, 0.0, 2.0], radius_m: 0.5 });
-        for (x, expected) in [(Vec3::new(0.4, 0.0, 1.0), true), (Vec3::new(0.0, 0.0, 2.4), true), (Vec3::new(0.4, 0.0, 2.4), false)] {
-            assert_eq!(inside(&capsule, x), expected, "{x}");
-        }
-    }
 }

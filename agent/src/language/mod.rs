@@ -29,7 +29,7 @@ mod unheeded;
 
 use draft::Draft;
 use phrases::{Names, Reading};
-use phystalk::spec::{Auto, Edit, Spec};
+use phystalk::spec::{Edit, Spec};
 use phystalk::world::Facts;
 use sense::Sense;
 
@@ -167,19 +167,10 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
         gloss.push("the turn before is undone".to_owned());
     }
     gloss.append(&mut draft.gloss);
-    gloss.extend(too_late(context, &draft.spec));
     if edits.is_empty() && gloss.is_empty() {
         gloss.push("that is so already".to_owned());
     }
     Reply::Edits { edits, gloss, not_understood }
-}
-
-/// Events that this request sets after the end of a run whose length is given: they would never happen.
-fn too_late(context: &Context, after: &Spec) -> Vec<String> {
-    let Auto::Value(end_s) = after.time.duration_s else { return Vec::new() };
-    let new = after.events.iter().filter(|e| !context.spec.events.contains(e));
-    let late = new.filter_map(|e| Some((&e.name, e.at_s.filter(|at_s| *at_s >= end_s)?)));
-    late.map(|(name, at_s)| format!("{name} at {} comes after the end, {}: \"longer\"", say::seconds(at_s), say::seconds(end_s))).collect()
 }
 
 /// Why nothing was done.
