@@ -16,8 +16,8 @@ pub enum Tier {
 /// What the user asked for on the command line.
 #[derive(Clone, Debug, Default)]
 pub struct DeviceRequest {
-    /// Take only adapters whose name contains this, case folded.
-    pub name_contains: Option<String>,
+    /// Take only adapters whose name, or address on the PCI bus, contains this, case folded.
+    pub contains: Option<String>,
     /// Take a software adapter even where there is a GPU.
     pub cpu: bool,
 }
@@ -216,8 +216,13 @@ fn rank(kind: wgpu::DeviceType) -> u32 {
 /// Whether an adapter is what was asked for, and able.
 fn fits(adapter: &wgpu::Adapter, request: &DeviceRequest) -> bool {
     let info = adapter.get_info();
-    let name_fits = request.name_contains.as_ref().is_none_or(|want| info.name.to_lowercase().contains(&want.to_lowercase()));
-    name_fits && (!request.cpu || info.device_type == wgpu::DeviceType::Cpu) && adapter.features().contains(REQUIRED)
+    is_called(&info, request) && (!request.cpu || info.device_type == wgpu::DeviceType::Cpu) && adapter.features().contains(REQUIRED)
+}
+
+/// By its name, or by its place, which tells equal ones apart.
+fn is_called(info: &wgpu::AdapterInfo, request: &DeviceRequest) -> bool {
+    let names = [&info.name, &info.device_pci_bus_id].map(|name| name.to_lowercase());
+    request.contains.as_ref().is_none_or(|want| names.iter().any(|name| name.contains(&want.to_lowercase())))
 }
 
 /// The adapters behind some backends, the best first.
@@ -237,8 +242,8 @@ async fn open(request: &DeviceRequest) -> Result<Gpu, GpuError> {
     tracing::debug!(adapters = adapters.len(), "adapters listed");
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     let Some(adapter) = adapters.iter().find(|a| fits(a, request)) else {
-        let wanted = match (&request.name_contains, request.cpu) {
-            (Some(name), _) => format!("a device whose name contains \"{name}\""),
+        let wanted = match (&request.contains, request.cpu) {
+            (Some(name), _) => format!("a device whose name or PCI address contains \"{name}\""),
             (None, true) => "a software adapter (--cpu)".to_owned(),
             (None, false) => "any adapter with subgroups and immediates".to_owned(),
         };
@@ -276,5 +281,12 @@ mod tests {
         let refused = gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some("too large"), size, usage, mapped_at_creation: false });
         let error = Readback::start(&gpu, &[(&refused, 16)]).arrive(&gpu).unwrap_err();
         assert!(matches!(error, GpuError::Lost { .. } | GpuError::NoMemory { .. }), "{error}");
+    }
+
+    #[test]
+    fn equal_devices_are_told_apart_by_their_place() {
+        let info = wgpu::AdapterInfo { device_pci_bus_id: "0000:1a:00.0".to_owned(), ..Gpu::shared_for_tests().unwrap().info.clone() };
+        let called = |want: &str| is_called(&info, &DeviceRequest { contains: Some(want.to_owned()), cpu: false });
+        assert!(called("0000:1A:00") && called(&info.name.to_uppercase()) && !called("0000:1b:00"));
     }
 }

@@ -28,6 +28,7 @@ struct Adapter {
     kind: String,
     backend: String,
     driver: String,
+    pci: String,
 }
 
 /// The device that runs would use.
@@ -104,6 +105,7 @@ fn adapters() -> Vec<Adapter> {
         kind: format!("{:?}", info.device_type),
         backend: info.backend.to_string(),
         driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        pci: info.device_pci_bus_id,
     });
     describe.collect()
 }
@@ -170,7 +172,10 @@ fn report(findings: &Findings) -> String {
         Some(d) => rows.push(("device", format!("{} ({}; quality {} unless said otherwise)", d.name, d.tier, d.default_quality))),
         None => rows.push(("device", "none".to_owned())),
     }
-    rows.extend(findings.adapters.iter().map(|a| ("adapter", format!("{} · {} · {} · {}", a.name, a.kind, a.backend, a.driver))));
+    let shown = |a: &Adapter| {
+        [&a.name, &a.kind, &a.backend, &a.driver, &a.pci].into_iter().filter(|s| !s.is_empty()).cloned().collect::<Vec<_>>().join(" · ")
+    };
+    rows.extend(findings.adapters.iter().map(|a| ("adapter", shown(a))));
     rows.push(("vulkan loader", path(&findings.vulkan.loader)));
     rows.extend(findings.vulkan.drivers.iter().map(|d| ("vulkan driver", d.display().to_string())));
     let terminal = &findings.terminal;

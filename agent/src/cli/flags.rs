@@ -40,7 +40,7 @@ pub struct Flags {
     /// Size of the pictures, as 1280x720
     #[arg(long, global = true, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
-    /// Use the adapter whose name contains this
+    /// Use the adapter whose name or PCI address contains this (see doctor)
     #[arg(long, global = true, value_name = "SUBSTRING")]
     pub device: Option<String>,
     /// Use a software adapter even where there is a GPU
@@ -82,7 +82,7 @@ impl QualityFlag {
 impl Flags {
     /// Which device to open.
     pub fn device_request(&self) -> DeviceRequest {
-        DeviceRequest { name_contains: self.device.clone(), cpu: self.cpu }
+        DeviceRequest { contains: self.device.clone(), cpu: self.cpu }
     }
 
     /// Choices of a run, outside the spec.
