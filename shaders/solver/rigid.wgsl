@@ -88,3 +88,9 @@ fn spin_of(inverse: array<vec4<f32>, 3>, q: vec4<f32>, momentum: vec3<f32>) -> v
 fn rotation_of(q: vec4<f32>) -> mat3x3<f32> {
     return mat3x3<f32>(turned(q, vec3<f32>(1.0, 0.0, 0.0)), turned(q, vec3<f32>(0.0, 1.0, 0.0)), turned(q, vec3<f32>(0.0, 0.0, 1.0)));
 }
+
+// As `held_back`: the share that is followed of a velocity of a body's centre and of its spin, for the body's rim.
+fn followed_share(body: Body, shape: Shape, v: vec3<f32>) -> f32 {
+    let rim = shape.radius_m * length(spin_of(shape.inverse, body.turn, body.angular_momentum.xyz));
+    return min(1.0, params.speed_most / max(length(v) + rim, 1e-30));
+}

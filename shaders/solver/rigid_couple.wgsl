@@ -1,15 +1,12 @@
 // Nodes that meet a body respond to it as it will move: what is bonded moves with it, what touches
-// it may leave but not enter, with Coulomb's friction. The body gets what the node gives.
+// it may leave but not enter, with Coulomb's friction. From here on their momentum is what they give the body.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> active_blocks: array<u32>;
 @group(0) @binding(2) var<storage, read> bodies: array<Body>;
 @group(0) @binding(3) var<storage, read> shapes: array<Shape>;
 @group(0) @binding(4) var<storage, read> predicted: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> sums: array<vec4<i32>>;
-@group(0) @binding(6) var<storage, read_write> meetings: array<Meeting>;
-@group(0) @binding(7) var<storage, read_write> control: Control;
-var<immediate> substep: Substep;
+@group(0) @binding(5) var<storage, read_write> meetings: array<Meeting>;
 
 fn respond(node: u32, x: vec3<f32>) {
     let meeting = meetings[node];
@@ -33,10 +30,7 @@ fn respond(node: u32, x: vec3<f32>) {
         let kept = select(0.0, 1.0 - grip / max(speed, 1e-20), speed > grip);
         after = body_v + meeting.normal * meeting.allowed_m_s + sliding * kept;
     }
-    let momentum_unit = momentum_units(substep.index, substep.lag);
-    let change = vec3<i32>(round(meeting.soft_kg * (after - v) * momentum_unit));
-    sums[node] += vec4<i32>(change, 0);
-    meetings[node].impulse = vec3<f32>(-change) / momentum_unit;
+    meetings[node].momentum = meeting.soft_kg * (v - after);
 }
 
 @compute @workgroup_size(64)

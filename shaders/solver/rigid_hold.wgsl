@@ -1,5 +1,5 @@
 // Start of a segment: a body with a point in a pin is held by it, still or along its path, and one that
-// no pin reaches is free. What bodies may hand to nodes of soft matter in the first substep is measured, for its
+// no pin reaches is free, as fast as substeps follow. What bodies may hand to nodes of soft matter in the first substep is measured, for its
 // fixed-point scale.
 
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -35,6 +35,12 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         bodies[b].velocity.w = 0.0;
         if (first != 0xffffffffu) {
             bodies[b].velocity = body_pinned(place_of(b, first), shapes[b].object);
+        }
+        if (first == 0xffffffffu) {
+            // A push may have been faster than what is followed.
+            let followed = followed_share(bodies[b], shapes[b], bodies[b].velocity.xyz);
+            bodies[b].velocity = vec4<f32>(bodies[b].velocity.xyz * followed, 0.0);
+            bodies[b].angular_momentum *= followed;
         }
         let spin = spin_of(shapes[b].inverse, bodies[b].turn, bodies[b].angular_momentum.xyz);
         let fastest = length(bodies[b].velocity.xyz) + length(spin) * shapes[b].radius_m;

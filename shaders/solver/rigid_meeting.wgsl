@@ -20,10 +20,11 @@ struct Meeting {
     normal: vec3<f32>,
     // The node may leave the body no slower than this, m/s.
     allowed_m_s: f32,
-    // Given to the body, kg m/s.
+    // Given to the body in the end, as the fixed point has it, kg m/s.
     impulse: vec3<f32>,
     // Mass of the body's particles at the node; 0 where nothing meets.
     rigid_kg: f32,
+    // Of the node, then what it gives the body.
     momentum: vec3<f32>,
     soft_kg: f32,
     // And whether the node slides along it.

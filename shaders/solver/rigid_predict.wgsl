@@ -1,5 +1,6 @@
 // What the nodes that a body meets would add to it if they moved with it: mass, its moments about the
-// body's centre, momentum and angular momentum, summed over a chunk of members in their order.
+// body's centre, momentum and angular momentum, summed over a chunk of members in their order. And once they have
+// responded the same of those that did, with the momentum that they give.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> bodies: array<Body>;

@@ -22,7 +22,8 @@ var<immediate> substep: Substep;
 var<workgroup> speed: array<vec4<f32>, RIGID_BODIES>;
 // w: 1 where gravity alone moves it, before contacts.
 var<workgroup> spin: array<vec4<f32>, RIGID_BODIES>;
-// Inverse of the inertia tensor, world frame: xx yy zz, xy xz yz.
+// Inverse of the inertia tensor, world frame: xx yy zz, xy xz yz. w of the first: twice its energy before contacts, all that
+// static ones leave; negative where it meets other bodies, which may give it more.
 var<workgroup> ease_diagonal: array<vec4<f32>, RIGID_BODIES>;
 var<workgroup> ease_mixed: array<vec4<f32>, RIGID_BODIES>;
 // Colours that manifolds of a body have, a bit each.
@@ -202,6 +203,8 @@ fn colour_all() -> u32 {
         taken[a] |= mask;
         if (b != NO_BODY) {
             taken[b] |= mask;
+            ease_diagonal[a].w = -1.0;
+            ease_diagonal[b].w = -1.0;
         }
         manifolds[m].colour = colour;
         most = max(most, colour + 1u);
@@ -240,9 +243,7 @@ fn drive(b: u32) {
     turning += mass * shape.radius_m * take_driven(12u * b + 6u);
     let driven_v = body.velocity.xyz + momentum / mass + substep.dt_s * (params.gravity_m_s2 + objects[shape.object].xyz);
     body.angular_momentum += vec4<f32>(turning, 0.0);
-    // As `held_back`, for its rim.
-    let rim = shape.radius_m * length(spin_of(shape.inverse, body.turn, body.angular_momentum.xyz));
-    let followed = min(1.0, params.speed_most / max(length(driven_v) + rim, 1e-30));
+    let followed = followed_share(body, shape, driven_v);
     let v = driven_v * followed;
     body.angular_momentum *= followed;
     bodies[b].angular_momentum = body.angular_momentum;
@@ -251,13 +252,14 @@ fn drive(b: u32) {
     let r = rotation_of(body.turn);
     let columns = mat3x3<f32>(shape.inverse[0].xyz, shape.inverse[1].xyz, shape.inverse[2].xyz);
     let ease = r * columns * transpose(r);
-    ease_diagonal[b] = vec4<f32>(ease[0].x, ease[1].y, ease[2].z, 0.0);
+    let energy = mass * dot(v, v) + dot(body.angular_momentum.xyz, spin[b].xyz);
+    ease_diagonal[b] = vec4<f32>(ease[0].x, ease[1].y, ease[2].z, energy);
     ease_mixed[b] = vec4<f32>(ease[0].y, ease[0].z, ease[1].z, 0.0);
     if (held) {
         // As fast as its pin.
         speed[b] = vec4<f32>(body.velocity.xyz, 0.0);
         spin[b] = vec4<f32>(0.0);
-        ease_diagonal[b] = vec4<f32>(0.0);
+        ease_diagonal[b] = vec4<f32>(0.0, 0.0, 0.0, -1.0);
         ease_mixed[b] = vec4<f32>(0.0);
         bodies[b].angular_momentum = vec4<f32>(0.0);
     }
@@ -314,14 +316,20 @@ fn travel(b: u32) {
 
 var<workgroup> old_turn: array<vec4<f32>, RIGID_BODIES>;
 
-// Velocities at the end; the angular momentum gains what contacts added to the spin.
+// Velocities at the end; the angular momentum gains what contacts added to the spin. What stands still does no work: where
+// rounds that do not settle, between surfaces that leave no room, say otherwise, all that the body had is left to it.
 fn settle(b: u32) {
     let held = bodies[b].velocity.w;
     let q = old_turn[b];
     let kept = bodies[b].angular_momentum.xyz;
     let change = spin[b].xyz - spin_of(shapes[b].inverse, q, kept);
-    bodies[b].velocity = vec4<f32>(speed[b].xyz, held);
-    bodies[b].angular_momentum = vec4<f32>(kept + turned(q, tensor(shapes[b].inertia, turned_back(q, change))), 0.0);
+    let momentum = kept + turned(q, tensor(shapes[b].inertia, turned_back(q, change)));
+    let energy = dot(speed[b].xyz, speed[b].xyz) / max(speed[b].w, 1e-30) + dot(momentum, spin[b].xyz);
+    let had = ease_diagonal[b].w;
+    let grew = had >= 0.0 && energy > had && any(taken[b] != vec4<u32>(0u));
+    let share = select(1.0, sqrt(had / energy), grew);
+    bodies[b].velocity = vec4<f32>(speed[b].xyz * share, held);
+    bodies[b].angular_momentum = vec4<f32>(momentum * share, 0.0);
 }
 
 // What a sweep does.

@@ -42,9 +42,11 @@ fn settle(node: u32, x: vec3<f32>) {
     let b = near.contact & (SLIDES - 1u);
     let level = level_at(b, turned_back(bodies[b].turn, x - bodies[b].centre.xyz));
     let normal = turned(bodies[b].turn, level.gradient * inverseSqrt(max(dot(level.gradient, level.gradient), 1e-12)));
-    // A gap may close; an overlap opens by a tenth in a substep, by ten cells a second at most.
+    // A gap may close; an overlap opens by a tenth in a substep, no faster than weight brings within a few of them: it makes
+    // good what creeps, and what was put into a body is not shot out of it.
     let gap_m = near_gap_m(near.contact);
-    let allowed = select(-gap_m / substep.dt_s, min(-0.1 * gap_m / substep.dt_s, 10.0 * params.cell_m), gap_m < 0.0);
+    let opening = 4.0 * length(params.gravity_m_s2) * substep.dt_s;
+    let allowed = select(-gap_m / substep.dt_s, min(-0.1 * gap_m / substep.dt_s, opening), gap_m < 0.0);
     if (dot(momentum / soft_kg - velocity_at(b, x), normal) < allowed) {
         let rigid_kg = f32(near.touched) / params.mass_units;
         meetings[node] = Meeting(normal, allowed, vec3<f32>(0.0), rigid_kg, momentum, soft_kg, near.contact & 1023u);

@@ -118,7 +118,8 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     let members = prepared.gaussians.subset(&prepared.members(index as u32, false));
     let auto = proxy::young_auto(&solid.stance, object.material.density_kg_m3());
     let (low, high) = bounds(&solid.position_m);
-    let yard = Yardstick { standing_pa: auto.value_pa, density_kg_m3: object.material.density_kg_m3(), height_m: f64::from(high.z - low.z) };
+    let yard =
+        Yardstick { standing_pa: auto.value_pa, density_kg_m3: object.material.density_kg_m3(), height_m: height_m(low.z, high.z, solid.spacing_m) };
     let own = (format!("object.{}", object.name), &object.material);
     let parts = object.parts.iter().map(|part| (format!("object.{}.part.{}", object.name, part.name), &part.material));
     let mut stuffs = Vec::new();
@@ -175,6 +176,11 @@ fn resolve(matter: &mut Matter, yard: &Yardstick, material: &Material, owner: &s
         matter.young_auto.push((format!("{owner}.material.young_pa"), stuff.young_pa));
     }
     stuff
+}
+
+/// Height of what has particles between two heights; of a single layer that of a particle.
+fn height_m(low_m: f32, high_m: f32, spacing_m: f32) -> f64 {
+    f64::from((high_m - low_m).max(spacing_m))
 }
 
 /// Says where an object that stands as captured cannot: an automatic modulus says so of itself.

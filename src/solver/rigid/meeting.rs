@@ -2,9 +2,9 @@
 //!
 //! A body has no mass on the grid. Nodes that it meets are first weighed as if they moved with it, which
 //! gives the velocity that both will have; then each node responds to that velocity, as to a moving
-//! collider or, where its own object's soft parts hang on the body, by moving with it; the body gets
-//! the opposite impulse, the one that the fixed point of the grid took. So momentum is kept but for the rounding
-//! of sums, and a body may be as light beside a liquid as it likes.
+//! collider or, where its own object's soft parts hang on the body, by moving with it. What they give so is not quite what
+//! takes the body there; the difference moves both. The body gets the opposite of what the fixed point of the grid took. So
+//! momentum is kept but for the rounding of sums, and a body may be as light beside a liquid as it likes.
 
 use super::body::Assembly;
 use crate::gpu::{Gpu, Recording};
@@ -21,8 +21,10 @@ passes! {
     rigid_mark: ["substance", "particle", "on_grid", "rigid", "rigid_field", "rigid_meeting", "rigid_mark"] [Read, Read, Read, Read, Read, Read, Write, Read] 0;
     rigid_touch: ["control", "substep", "rigid", "rigid_field", "node", "rigid_meeting", "rigid_touch"] [Read, Read, Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
     rigid_predict: ["rigid", "rigid_meeting", "rigid_predict"] [Read, Read, Read, Read, Read, Write] 0;
-    rigid_meet: ["rigid", "rigid_meet"] [Read, Read, Read, Read, Write] 0;
-    rigid_couple: ["control", "substep", "rigid", "node", "rigid_meeting", "rigid_couple"] [Read, Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
+    rigid_meet: ["rigid", "rigid_joint", "rigid_meet"] [Read, Read, Read, Read, Write] 0;
+    rigid_couple: ["rigid", "node", "rigid_meeting", "rigid_couple"] [Read, Read, Read, Read, Read, Write] 0;
+    rigid_even: ["rigid", "rigid_joint", "rigid_even"] [Read, Read, Read, Read, Read, Write] 0;
+    rigid_take: ["control", "substep", "rigid", "node", "rigid_meeting", "rigid_take"] [Read, Read, Read, Read, Write, Write, Write] SUBSTEP;
     rigid_gather: ["rigid", "rigid_meeting", "rigid_gather"] [Read, Read, Read, Read, Read, Write] 0;
 }
 
@@ -34,6 +36,7 @@ pub(in crate::solver) struct Meeting {
     owners: wgpu::Buffer,
     burdens: wgpu::Buffer,
     pub(super) predicted: wgpu::Buffer,
+    evened: wgpu::Buffer,
     chunks: u32,
 }
 
@@ -46,6 +49,8 @@ pub(in crate::solver) struct MeetingBound {
     predict: wgpu::BindGroup,
     meet: wgpu::BindGroup,
     couple: wgpu::BindGroup,
+    even: wgpu::BindGroup,
+    take: wgpu::BindGroup,
     gather: wgpu::BindGroup,
 }
 
@@ -65,6 +70,7 @@ impl Meeting {
             owners: gpu.storage_from("solver.rigid.owners", &all.owners)?,
             burdens: gpu.storage::<[[f32; 4]; 4]>("solver.rigid.burdens", all.owners.len())?,
             predicted: gpu.storage::<[[f32; 4]; 2]>("solver.rigid.predicted", all.bodies.len())?,
+            evened: gpu.storage::<[[f32; 4]; 2]>("solver.rigid.evened", all.bodies.len())?,
             chunks: all.owners.len() as u32,
         })
     }
@@ -81,7 +87,9 @@ impl Meeting {
             touch: gpu.bind(&p.rigid_touch, &[params, active, of.bodies, of.shapes, of.field, &grid.sums, nears, meetings, control]),
             predict: gpu.bind(&p.rigid_predict, &[params, of.bodies, members, owners, meetings, &self.burdens]),
             meet: gpu.bind(&p.rigid_meet, &[params, of.bodies, of.shapes, &self.burdens, &self.predicted]),
-            couple: gpu.bind(&p.rigid_couple, &[params, active, of.bodies, of.shapes, &self.predicted, &grid.sums, meetings, control]),
+            couple: gpu.bind(&p.rigid_couple, &[params, active, of.bodies, of.shapes, &self.predicted, meetings]),
+            even: gpu.bind(&p.rigid_even, &[params, of.bodies, of.shapes, &self.burdens, &self.predicted, &self.evened]),
+            take: gpu.bind(&p.rigid_take, &[params, active, of.bodies, &self.evened, &grid.sums, meetings, control]),
             gather: gpu.bind(&p.rigid_gather, &[params, of.bodies, members, owners, meetings, of.given]),
         })
     }
@@ -94,7 +102,10 @@ impl Meeting {
         recording.indirect_with(&p.rigid_touch, &b.touch, substep, &b.active_groups, 0);
         recording.dispatch(&p.rigid_predict, &b.predict, chunks);
         recording.dispatch(&p.rigid_meet, &b.meet, [1, 1, 1]);
-        recording.indirect_with(&p.rigid_couple, &b.couple, substep, &b.active_groups, 0);
+        recording.indirect(&p.rigid_couple, &b.couple, &b.active_groups, 0);
+        recording.dispatch(&p.rigid_predict, &b.predict, chunks);
+        recording.dispatch(&p.rigid_even, &b.even, [1, 1, 1]);
+        recording.indirect_with(&p.rigid_take, &b.take, substep, &b.active_groups, 0);
         recording.dispatch(&p.rigid_gather, &b.gather, chunks);
     }
 }

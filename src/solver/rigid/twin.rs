@@ -251,6 +251,10 @@ struct Moving {
     old_turn: Quat,
     /// Gravity alone moves it.
     flies: bool,
+    /// Twice its energy before contacts.
+    had: f32,
+    /// Whether it meets something, and nothing that moves.
+    meets_still: bool,
 }
 
 struct Solve<'a> {
@@ -367,7 +371,13 @@ impl World<'_> {
         for &(_, m) in &order {
             let other = solve.other(m);
             solve.moving[m / SLOTS].flies = false;
+            solve.moving[m / SLOTS].meets_still = solve.moving[m / SLOTS].lightness > 0.0;
             other.into_iter().for_each(|b| solve.moving[b].flies = false);
+        }
+        for (_, m) in &order {
+            if let Some(b) = solve.other(*m) {
+                (solve.moving[b].meets_still, solve.moving[m / SLOTS].meets_still) = (false, false);
+            }
         }
         order.sort_unstable();
         let order: Vec<usize> = order.into_iter().map(|(_, m)| m).collect();
@@ -389,8 +399,11 @@ impl World<'_> {
         }
         solve.sweep(&order, Solve::bounce);
         for ((body, m), shape) in bodies.iter_mut().zip(&solve.moving).zip(&self.all.shapes) {
-            body.velocity_m_s = m.v.extend(body.velocity_m_s[3]).into();
-            body.angular_momentum = momentum(m, shape, m.old_turn).extend(0.0).into();
+            let momentum = momentum(m, shape, m.old_turn);
+            let energy = m.v.length_squared() * shape.mass_kg() + momentum.dot(m.omega);
+            let share = if m.meets_still && energy > m.had { (m.had / energy).sqrt() } else { 1.0 };
+            body.velocity_m_s = (m.v * share).extend(body.velocity_m_s[3]).into();
+            body.angular_momentum = (momentum * share).extend(0.0).into();
         }
     }
 
@@ -406,6 +419,8 @@ impl World<'_> {
                 kept: Vec3::ZERO,
                 old_turn: q,
                 flies: false,
+                had: 0.0,
+                meets_still: false,
             };
         }
         let v = xyz(&body.velocity_m_s) + given.0 / shape.mass_kg() + (self.gravity_m_s2 + self.accelerations[shape.object as usize]) * self.dt_s;
@@ -414,14 +429,17 @@ impl World<'_> {
         let followed = (self.speed_most_m_s / (v.length() + rim).max(1e-30)).min(1.0);
         let (v, kept) = (v * followed, kept * followed);
         let r = Mat3::from_quat(q);
+        let omega = spin_of(shape, q, kept);
         Moving {
             v,
-            omega: spin_of(shape, q, kept),
+            omega,
             lightness: 1.0 / shape.mass_kg(),
             ease: r * shape.inverse() * r.transpose(),
             kept,
             old_turn: q,
             flies: shape.bonded == 0 && *given == (Vec3::ZERO, Vec3::ZERO),
+            had: v.length_squared() * shape.mass_kg() + kept.dot(omega),
+            meets_still: false,
         }
     }
 

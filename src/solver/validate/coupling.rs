@@ -85,7 +85,7 @@ pub(super) fn pairs(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
 /// Cells along a cube's edges.
 const CUBE_CELLS: f64 = 4.0;
 /// Cells to which a cube floats as it should: where the surface of a body or of a liquid lies, a grid knows no better.
-const AFLOAT_CELLS: f64 = 0.2;
+const AFLOAT_CELLS: f64 = 0.125;
 /// Spacings along each axis of a pool, and along the edges of a cube.
 const POOL: [u32; 3] = [20, 20, 15];
 const CUBE: u32 = 8;

@@ -3,10 +3,10 @@
 use super::{World, spin_of, turn, xyz};
 use crate::solver::constants::{REST_CELLS, RIGID_LANES};
 use crate::solver::core::Params;
-use crate::solver::rigid::body::Body;
+use crate::solver::rigid::body::{Body, Shape};
 use crate::solver::state::ParticleState;
 use crate::solver::substance::Substance;
-use crate::solver::twin::{self, Grid};
+use crate::solver::twin::{self, Grid, Node};
 use glam::{DMat3, DVec3, Vec3};
 use std::collections::BTreeMap;
 
@@ -55,6 +55,7 @@ impl World<'_> {
         let mut meetings = self.meetings(bodies, &nears, grid, params);
         let predicted = self.predicted(bodies, &meetings, grid, params);
         self.couple(bodies, &predicted, &mut meetings, grid, params);
+        self.take(bodies, &predicted, &mut meetings, grid, params);
         let mut given = vec![(DVec3::ZERO, DVec3::ZERO); bodies.len()];
         self.members(bodies, &meetings, params, |b, share, _, meeting, r| {
             given[b].0 += meeting.impulse * share;
@@ -120,7 +121,8 @@ impl World<'_> {
                 let body = &bodies[b];
                 let level = self.all.fields[b].at(turn(body).inverse() * (x - xyz(&body.centre_m)));
                 let normal = turn(body) * level.gradient.normalize();
-                let allowed = if gap_m < 0.0 { (-0.1 * gap_m / self.dt_s).min(10.0 * params.cell_m) } else { -gap_m / self.dt_s };
+                let opening = 4.0 * self.gravity_m_s2.length() * self.dt_s;
+                let allowed = if gap_m < 0.0 { (-0.1 * gap_m / self.dt_s).min(opening) } else { -gap_m / self.dt_s };
                 let arm = x - xyz(&body.centre_m);
                 let own = xyz(&body.velocity_m_s) + spin_of(&self.all.shapes[b], turn(body), xyz(&body.angular_momentum)).cross(arm);
                 if ((soft.momentum / soft.mass).as_vec3() - own).dot(normal) < allowed {
@@ -153,16 +155,31 @@ impl World<'_> {
 
     /// `rigid_predict.wgsl` and `rigid_meet.wgsl`: each body and its nodes as one rigid thing.
     fn predicted(&self, bodies: &[Body], meetings: &BTreeMap<[i32; 3], Meeting>, grid: &Grid, params: &Params) -> Vec<(DVec3, DVec3)> {
-        let cross = |r: DVec3| DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0));
-        let own = |(body, shape): (&Body, &super::Shape)| {
-            let r = DMat3::from_quat(turn(body).as_dquat());
-            let mass = f64::from(shape.mass_kg());
-            let inertia = r * shape.inertia().as_dmat3() * r.transpose();
-            (mass, DVec3::ZERO, inertia, xyz(&body.velocity_m_s).as_dvec3() * mass, xyz(&body.angular_momentum).as_dvec3())
+        let own = |(body, shape): (&Body, &Shape)| {
+            (xyz(&body.velocity_m_s).as_dvec3() * f64::from(shape.mass_kg()), xyz(&body.angular_momentum).as_dvec3())
         };
-        let mut sums: Vec<_> = bodies.iter().zip(&self.all.shapes).map(own).collect();
-        self.members(bodies, meetings, params, |b, share, node, _, r| {
-            let (m, p) = (grid[node].mass * share, grid[node].momentum * share);
+        let own = bodies.iter().zip(&self.all.shapes).map(own).collect();
+        self.joints(bodies, meetings, grid, params, own, |soft, _| soft.momentum)
+    }
+
+    /// How each body and its nodes move together with what it has of momentum and angular momentum and what nodes bring.
+    fn joints(
+        &self,
+        bodies: &[Body],
+        meetings: &BTreeMap<[i32; 3], Meeting>,
+        grid: &Grid,
+        params: &Params,
+        has: Vec<(DVec3, DVec3)>,
+        brings: impl Fn(&Node, &Meeting) -> DVec3,
+    ) -> Vec<(DVec3, DVec3)> {
+        let cross = |r: DVec3| DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0));
+        let own = |((body, shape), (p, l)): ((&Body, &Shape), (DVec3, DVec3))| {
+            let r = DMat3::from_quat(turn(body).as_dquat());
+            (f64::from(shape.mass_kg()), DVec3::ZERO, r * shape.inertia().as_dmat3() * r.transpose(), p, l)
+        };
+        let mut sums: Vec<_> = bodies.iter().zip(&self.all.shapes).zip(has).map(own).collect();
+        self.members(bodies, meetings, params, |b, share, node, meeting, r| {
+            let (m, p) = (grid[node].mass * share, brings(&grid[node], meeting) * share);
             sums[b].0 += m;
             sums[b].1 += r * m;
             sums[b].2 -= cross(r) * cross(r) * m;
@@ -178,10 +195,28 @@ impl World<'_> {
             .collect()
     }
 
+    /// `rigid_even.wgsl` and `rigid_take.wgsl`: what nodes give beyond what takes each body to what was predicted moves both.
+    fn take(&self, bodies: &[Body], predicted: &[(DVec3, DVec3)], meetings: &mut BTreeMap<[i32; 3], Meeting>, grid: &mut Grid, params: &Params) {
+        let owed = |((body, shape), (v, omega)): ((&Body, &Shape), &(DVec3, DVec3))| {
+            let r = DMat3::from_quat(turn(body).as_dquat());
+            let turning = r * shape.inertia().as_dmat3() * r.transpose() * *omega - xyz(&body.angular_momentum).as_dvec3();
+            ((xyz(&body.velocity_m_s).as_dvec3() - *v) * f64::from(shape.mass_kg()), -turning)
+        };
+        let owed = bodies.iter().zip(&self.all.shapes).zip(predicted).map(owed).collect();
+        let evened = self.joints(bodies, meetings, grid, params, owed, |_, meeting| meeting.impulse);
+        for (node, meeting) in meetings {
+            let Some(soft) = grid.get_mut(node) else { continue };
+            let (velocity, omega) = evened[meeting.body];
+            let arm = (place_of(node, params) - xyz(&bodies[meeting.body].centre_m)).as_dvec3();
+            meeting.impulse -= (velocity + omega.cross(arm)) * soft.mass;
+            soft.momentum -= meeting.impulse;
+        }
+    }
+
     /// `rigid_couple.wgsl`.
-    fn couple(&self, bodies: &[Body], predicted: &[(DVec3, DVec3)], meetings: &mut BTreeMap<[i32; 3], Meeting>, grid: &mut Grid, params: &Params) {
+    fn couple(&self, bodies: &[Body], predicted: &[(DVec3, DVec3)], meetings: &mut BTreeMap<[i32; 3], Meeting>, grid: &Grid, params: &Params) {
         meetings.retain(|node, meeting| {
-            let Some(soft) = grid.get_mut(node) else { return false };
+            let Some(soft) = grid.get(node) else { return false };
             let v = soft.momentum / soft.mass;
             let (velocity, omega) = predicted[meeting.body];
             let body_v = velocity + omega.cross((place_of(node, params) - xyz(&bodies[meeting.body].centre_m)).as_dvec3());
@@ -198,7 +233,6 @@ impl World<'_> {
                 after += normal * allowed + sliding * (1.0 - grip / sliding.length().max(1e-20)).max(0.0);
             }
             meeting.impulse = (v - after) * soft.mass;
-            soft.momentum -= meeting.impulse;
             true
         });
     }
