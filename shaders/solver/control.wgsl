@@ -33,6 +33,8 @@ struct Control {
     blocks: atomic<u32>,
     // 1 where a body touched more things than it has slots for.
     unmet: atomic<u32>,
+    // Particles, at the end of the segment, that are inside out under a law that does not follow it.
+    inside_out: atomic<u32>,
 }
 
 // Power of two that brings the momenta of a substep to `momentum_bits`. Where the sums are made before all

@@ -44,6 +44,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     atomicMax(&control.j_high, ordered(j));
     atomicMax(&control.final_speed, bitcast<u32>(length(v)));
     let s = substances[row_of(bitcast<u32>(tag.y))];
+    // Neo-Hookean: the logarithm of a volume that is none.
+    if (s.model == 1u && j <= 0.0) {
+        atomicAdd(&control.inside_out, 1u);
+        atomicOr(&control.suspects, 1u << object);
+    }
     let modulus = step_modulus(s, tag.w, matter[i].w, matter[n + i].w) + capillary_modulus(s, params.per_m);
     atomicMax(&control.wave_speed, bitcast<u32>(sqrt(modulus * matter[2u * n + i].w / kinematics[i].w)));
 }

@@ -149,11 +149,15 @@ impl Solver {
                 // What a failed try came to may ask for more room than there is; shorter substeps may never come to it.
                 if tries.room > 1 {
                     (tries.room, tries.room_most) = (tries.room / 2, tries.room / 2);
-                } else if tries.trips > 0 {
-                    self.shorten_or(error, &mut tries)?;
-                    (seen.driven_m_s, seen.drift_m_s) = calm;
-                } else {
+                } else if tries.trips == 0 {
                     return Err(error);
+                } else if self.shorten(&error, &mut tries) {
+                    (seen.driven_m_s, seen.drift_m_s) = calm;
+                } else if self.give_way(0, &mut tries, report)? {
+                    self.backup();
+                    seen = self.look()?;
+                } else {
+                    break;
                 }
                 continue;
             }
@@ -169,22 +173,31 @@ impl Solver {
             // Room is no matter of the time step either, while there is any.
             if now.blocks > self.grid.as_ref().map_or(0, |g| g.capacity) {
                 self.roll_back(start, order);
-                if let Err(error) = self.make_room(now.blocks, 0) {
-                    self.shorten_or(error, &mut tries)?;
+                match self.make_room(now.blocks, 0) {
+                    Err(error) if !self.shorten(&error, &mut tries) => {
+                        if !self.give_way(now.suspects, &mut tries, report)? {
+                            break;
+                        }
+                        self.backup();
+                        seen = self.look()?;
+                    }
+                    _ => {}
                 }
                 continue;
             }
             let travel_m = self.params.slack as f32 * self.settings.cell_m;
             let Some(reason) = now.trip(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m) else {
-                self.time_s = until_s;
                 self.seen = Some(now);
-                if (until_s - frame_end_s).abs() < SAME_TIME_S {
-                    self.wary.frame_ends();
-                    self.set_wary(self.wary);
-                }
                 self.report(&plan, &now, report);
-                return Ok(());
+                break;
             };
+            if self.is_mendable(&now, &plan, travel_m, &tries) {
+                tracing::debug!(time_s = self.time_s, dt_s = plan.dt_s, reason, ?now, "mended");
+                self.wary.trouble();
+                self.mend(!now.has_sound_volumes(), report)?;
+                self.report(&plan, &now, report);
+                break;
+            }
             tracing::debug!(time_s = self.time_s, dt_s = plan.dt_s, reason, before = ?seen, ?now, "rolled back");
             self.roll_back(start, order);
             report.retries += 1;
@@ -213,9 +226,21 @@ impl Solver {
                     self.backup();
                     seen = Watch { driven_m_s: seen.driven_m_s, drift_m_s: seen.drift_m_s, ..self.look()? };
                 }
-                WayOn::None => return Err(SolverError::Unstable { time_s: self.time_s, dt_s: f64::from(plan.dt_s), reason }),
+                WayOn::None => {
+                    if !self.give_way(now.suspects, &mut tries, report)? {
+                        break;
+                    }
+                    self.backup();
+                    seen = self.look()?;
+                }
             }
         }
+        self.time_s = until_s;
+        if (until_s - frame_end_s).abs() < SAME_TIME_S {
+            self.wary.frame_ends();
+            self.set_wary(self.wary);
+        }
+        Ok(())
     }
 
     /// Adds a segment that held.

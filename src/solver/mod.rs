@@ -24,6 +24,7 @@ mod impact;
 mod kept;
 mod laws;
 mod liquid;
+mod mend;
 mod obstacles;
 mod prestress;
 mod record;

@@ -1,4 +1,5 @@
-//! What is done about a segment that failed: more room, shorter substeps, softer matter, in the order of what they cost.
+//! What is done about a segment that failed: more room, shorter substeps, softer matter, in the order of what they cost, and
+//! in the end what [`super::mend`] does.
 
 use super::advance::Plan;
 use super::budget;
@@ -7,7 +8,7 @@ use super::types::SolverError;
 use super::wary::HALVINGS;
 use super::watch::Watch;
 
-/// A material is softened this often before the run is given up.
+/// A material is softened this often in a segment, to a 4096th.
 const SOFTENINGS: u32 = 6;
 /// A segment's window gets so many times the room that it should need at most.
 const ROOM_MOST: i32 = 8;
@@ -19,13 +20,15 @@ pub(super) struct Tries {
     /// At most so many: less where the device has not that much.
     pub room_most: i32,
     softenings: u32,
+    /// Whether what is suspect was calmed.
+    pub calmed: bool,
     /// Failures that more room did not mend.
     pub trips: u32,
 }
 
 impl Default for Tries {
     fn default() -> Tries {
-        Tries { room: 1, room_most: ROOM_MOST, softenings: 0, trips: 0 }
+        Tries { room: 1, room_most: ROOM_MOST, softenings: 0, calmed: false, trips: 0 }
     }
 }
 
@@ -37,20 +40,34 @@ pub(super) enum WayOn {
     Shorter,
     /// With softer matter.
     Softer,
+    /// None of them helps.
     None,
 }
 
 impl Solver {
-    /// Halves the substeps of what spreads farther than there is room for: shorter ones may not come to that.
-    pub(super) fn shorten_or(&mut self, error: SolverError, tries: &mut Tries) -> Result<(), SolverError> {
-        if self.wary.halvings >= HALVINGS {
-            return Err(error);
-        }
-        tracing::debug!(time_s = self.time_s, %error, "shorter substeps");
+    /// Halves the substeps of what spreads farther than there is room for: shorter ones may not come to that. Whether they
+    /// could be halved.
+    pub(super) fn shorten(&mut self, error: &SolverError, tries: &mut Tries) -> bool {
+        tracing::debug!(time_s = self.time_s, %error, "too much room");
         self.wary.trouble();
-        self.wary.halvings += 1;
         tries.trips += 1;
-        Ok(())
+        let may = self.wary.halvings < HALVINGS;
+        self.wary.halvings += u32::from(may);
+        may
+    }
+
+    /// Whether substeps half as long are worth their cost.
+    fn may_halve(&self, plan: &Plan) -> bool {
+        let affordable = self.wary.halvings == 0 || f64::from(plan.dt_s) >= budget::shortest_s(&self.settings);
+        self.wary.halvings < HALVINGS && affordable
+    }
+
+    /// Whether nothing is wrong with a segment but shapes that nothing else puts right. Of what is merely inside out, which
+    /// its law does not follow, softer matter would make no difference.
+    pub(super) fn is_mendable(&self, now: &Watch, plan: &Plan, travel_m: f32, tries: &Tries) -> bool {
+        let tried = tries.calmed || now.has_sound_volumes();
+        let reshaped = Watch { inside_out: 0, j_low: 1.0, j_high: 1.0, ..*now };
+        tried && !self.may_halve(plan) && reshaped.trip(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m).is_none()
     }
 
     /// What is done about a segment that failed. Room costs little; substeps half as long cost as many again, which
@@ -67,10 +84,8 @@ impl Solver {
         if faster && tries.trips <= 2 {
             return Ok(WayOn::Wider);
         }
-        let shortest_s = budget::shortest_s(&self.settings);
-        let affordable = self.wary.halvings == 0 || f64::from(plan.dt_s) >= shortest_s;
         Ok(match () {
-            _ if self.wary.halvings < HALVINGS && affordable => WayOn::Shorter,
+            _ if self.may_halve(plan) => WayOn::Shorter,
             _ if tries.softenings < SOFTENINGS => {
                 tries.softenings += 1;
                 WayOn::Softer

@@ -257,6 +257,11 @@ impl Substance {
         matches!(self, Substance::Elastic(_) | Substance::Muscle { .. } | Substance::Plastic { .. } | Substance::Rigid { .. })
     }
 
+    /// Whether its law says nothing of what is turned inside out: of the logarithm of no volume.
+    pub(super) fn must_not_invert(&self) -> bool {
+        matches!(self, Substance::Elastic(ElasticModel::NeoHookean) | Substance::Muscle { model: ElasticModel::NeoHookean, .. })
+    }
+
     /// Whether its stress is that of its stretch.
     pub(super) fn carries_by_stretch(&self) -> bool {
         self.keeps_shape() && !self.is_rigid() || matches!(self, Substance::Viscoplastic { .. } | Substance::Snow { .. })

@@ -6,6 +6,7 @@ use crate::gpu::GpuError;
 use crate::spec::ColliderShape;
 use crate::spec::expression::Program;
 use glam::{DVec3, Quat, Vec3};
+use std::collections::BTreeMap;
 
 /// The particles of all objects, as sampled: the captured pose, free of stress. World frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -269,6 +270,8 @@ pub struct Advance {
     pub undefined: Vec<(String, u64)>,
     /// How often a field would have brought a particle beyond 200 m/s, where it was held.
     pub limited: u64,
+    /// How often particles of an object lost their strain, or their speed, as the last resort.
+    pub mended: BTreeMap<u32, u64>,
     /// Whether a rigid body touched more things at one time than the dozen that are followed from its side: the deepest counted.
     pub unmet: bool,
 }
@@ -348,19 +351,6 @@ pub enum SolverError {
         cell_m: f32,
         /// Substeps needed.
         substeps: u32,
-    },
-    /// Neither smaller substeps nor a softer material helped.
-    #[error(
-        "the simulation could not be kept stable after {time_s:.3} s: {reason}; tried substeps down to {dt_s:.2e} s and a softer material; \
-         lower the speeds, or raise material.young_pa"
-    )]
-    Unstable {
-        /// The last stable time.
-        time_s: f64,
-        /// The smallest substep tried.
-        dt_s: f64,
-        /// What the watch saw.
-        reason: String,
     },
     /// Bytes that are no checkpoint of this solver.
     #[error("a checkpoint does not fit: {what}; delete it, and the run starts anew")]

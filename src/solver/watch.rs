@@ -22,6 +22,7 @@ pub(super) struct Control {
     crowded: u32,
     blocks: u32,
     unmet: u32,
+    inside_out: u32,
 }
 
 impl Control {
@@ -42,6 +43,7 @@ impl Control {
         crowded: 0,
         blocks: 0,
         unmet: 0,
+        inside_out: 0,
     };
 
     pub fn watch(&self) -> Watch {
@@ -56,6 +58,7 @@ impl Control {
             crowded: self.crowded != 0,
             blocks: self.blocks as usize,
             unmet: self.unmet != 0,
+            inside_out: self.inside_out,
             nonfinite: self.nonfinite,
             j_low: value(self.j_low),
             j_high: value(self.j_high),
@@ -92,6 +95,8 @@ pub(super) struct Watch {
     pub blocks: usize,
     /// A rigid body touched more things than it has slots for.
     pub unmet: bool,
+    /// Particles inside out whose law does not follow that.
+    pub inside_out: u32,
     pub nonfinite: u32,
     pub j_low: f32,
     pub j_high: f32,
@@ -118,8 +123,13 @@ impl Watch {
 
     /// Whether a segment that is still running has failed already; what is measured at its end is not known yet.
     pub fn went_wrong(&self, dt_s: f32, sort_every: u32, cell_m: f32, travel_m: f32) -> bool {
-        let unmeasured = Watch { nonfinite: 0, wave_speed_m_s: 0.0, j_low: 1.0, j_high: 1.0, ..*self };
+        let unmeasured = Watch { nonfinite: 0, wave_speed_m_s: 0.0, inside_out: 0, j_low: 1.0, j_high: 1.0, ..*self };
         unmeasured.trip(dt_s, sort_every, cell_m, travel_m).is_some()
+    }
+
+    /// Whether no particle is larger or smaller than its law may make it.
+    pub fn has_sound_volumes(&self) -> bool {
+        !(self.j_low < J_TRIP.0 || self.j_high > J_TRIP.1)
     }
 
     /// Why the segment has to be run again, if it has to. `travel_m` is how far a particle may go
@@ -146,7 +156,10 @@ impl Watch {
         if self.overflow {
             return Some("momentum left the range of the grid's sums".to_owned());
         }
-        if self.j_low < J_TRIP.0 || self.j_high > J_TRIP.1 {
+        if self.inside_out > 0 {
+            return Some(format!("{} particles were turned inside out", self.inside_out));
+        }
+        if !self.has_sound_volumes() {
             return Some(format!("volumes changed by factors of {:.2} to {:.2}", self.j_low, self.j_high));
         }
         None

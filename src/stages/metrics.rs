@@ -62,6 +62,10 @@ pub struct SolverMetrics {
     /// The speed at which something was held, the fastest that substeps follow; 0 where nothing was.
     #[serde(default)]
     pub held_m_s: f64,
+    /// How often a particle of each object came to what neither shorter substeps nor softer matter resolve, and lost its strain or
+    /// its speed there.
+    #[serde(default)]
+    pub mended: BTreeMap<String, u64>,
     /// Wall seconds of the simulation.
     pub simulate_s: f64,
 }

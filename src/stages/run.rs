@@ -88,7 +88,8 @@ pub(super) fn run(
     let made = [("scene", ready.keys.scene.as_str()), ("proxy", &ready.keys.proxy), ("bind", &ready.keys.bind), ("picture", &ready.picture)];
     engine.store.pin("head", made.into_iter().chain(motion).filter(|(stage, key)| engine.store.contains(stage, key)))?;
     warnings.extend(done.totals.said.iter().cloned());
-    let of_solver: Vec<String> = summary::of_forces(&done.totals).into_iter().chain(summary::of_contacts(&done.totals)).collect();
+    let of_solver = summary::of_forces(&done.totals).into_iter().chain(summary::of_contacts(&done.totals));
+    let of_solver: Vec<String> = of_solver.chain(summary::of_mended(&done.totals)).collect();
     of_solver.iter().for_each(|w| sink.warning(w));
     warnings.extend(of_solver);
     summary::of_impacts(spec, &done.totals, ready.resolved.cell_m, done.stopped).iter().for_each(|n| sink.note(n));

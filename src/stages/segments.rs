@@ -71,6 +71,9 @@ pub(super) struct SolverTotals {
     /// The speed at which something was held, the fastest that substeps follow; 0 where nothing was.
     #[serde(default)]
     pub held_m_s: f64,
+    /// How often particles of an object lost their strain or speed as the last resort, by name.
+    #[serde(default)]
+    pub mended: BTreeMap<String, u64>,
     /// Whether a rigid body touched more things than are followed.
     #[serde(default)]
     pub unmet: bool,
@@ -100,6 +103,9 @@ impl SolverTotals {
         self.fired.extend_from_slice(&later.fired);
         for (name, times) in &later.undefined {
             *self.undefined.entry(name.clone()).or_default() += times;
+        }
+        for (name, times) in &later.mended {
+            *self.mended.entry(name.clone()).or_default() += times;
         }
         for (ours, theirs) in [(&mut self.softened, &later.softened), (&mut self.said, &later.said)] {
             for text in theirs {

@@ -40,6 +40,7 @@ pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
         undefined: advance.undefined.iter().cloned().collect(),
         limited: advance.limited,
         held_m_s: f64::from(advance.held_m_s),
+        mended: advance.mended.iter().map(|(object, times)| (name(*object).to_owned(), *times)).collect(),
         unmet: advance.unmet,
         ..SolverTotals::default()
     }
@@ -60,6 +61,17 @@ pub(super) fn of_forces(totals: &SolverTotals) -> Vec<String> {
         )
     });
     undefined.chain(limited).chain(held).collect()
+}
+
+/// What no substep resolved, in words.
+pub(super) fn of_mended(totals: &SolverTotals) -> Vec<String> {
+    let text = |(name, times): (&String, &u64)| {
+        format!(
+            "{name}: {times} times a particle came to what neither shorter substeps nor softer matter resolve, and lost its strain or its speed there: \
+             lower the speeds, raise material.young_pa, or use a smaller solver.cells_across"
+        )
+    };
+    totals.mended.iter().map(text).collect()
 }
 
 /// What contacts were left out, in words.
@@ -146,6 +158,7 @@ pub(super) fn metrics(
             undefined: totals.undefined.clone(),
             limited: totals.limited,
             held_m_s: totals.held_m_s,
+            mended: totals.mended.clone(),
             simulate_s: totals.seconds,
         },
         resolved: resolved(spec, ready, matter),

@@ -5,8 +5,8 @@ use super::{block, solver};
 use crate::Stop;
 use crate::solver::validate::joined;
 use crate::solver::{Advance, Collider, Particles, Placement, Plane, Settings, Solver, SolverError, Substance, Taut};
-use crate::spec::{ColliderShape, PlaneShape, SphereShape};
-use glam::{Quat, Vec3};
+use crate::spec::{ColliderShape, ElasticModel, PlaneShape, SphereShape};
+use glam::{Mat3, Quat, Vec3};
 
 fn grounded(cell_m: f32, substeps_most: u32) -> Settings {
     Settings { ground: Some(Plane { height_m: 0.0, friction: 0.3, restitution: 0.0 }), substeps_most, ..Settings::new(cell_m) }
@@ -164,4 +164,54 @@ fn a_collider_inside_an_object_is_kept_clear_and_bursts_nothing() {
         let nearest = states.iter().map(|s| (s.position_m - Vec3::splat(0.1)).length()).fold(f32::INFINITY, f32::min);
         assert!(substance == STONE || nearest >= 0.04 - 0.51 * cell_m, "{substance:?}: {nearest} m");
     }
+}
+
+#[test]
+fn what_is_no_number_is_made_one_from_what_is_around_it_and_that_is_said() {
+    let cell_m = 0.05;
+    let mut solver = solver(grounded(cell_m, 100), &of(Substance::default(), Vec3::new(0.0, 0.0, 2.0), cell_m, 1e5));
+    solver.edit(|s| if s.index == 100 { s.velocity_m_s = Vec3::splat(f32::NAN) } else { s.velocity_m_s.x = 0.5 }).expect("an edit");
+    let report = frames(&mut solver, 1);
+    assert!(report.mended.contains_key(&0), "{report:?}");
+    let states = solver.states().expect("states");
+    assert!(states.iter().all(|s| s.position_m.is_finite() && s.f().is_finite() && (s.velocity_m_s.x - 0.5).abs() < 0.05));
+}
+
+#[test]
+fn where_nothing_helps_things_stop_and_time_goes_on() {
+    let cell_m = 0.05;
+    let mut solver = solver(grounded(cell_m, 100), &joined(of(Substance::default(), Vec3::Z, cell_m, 1e5), of(STONE, 6.0 * Vec3::X, cell_m, 1e5)));
+    solver.kick(0, Vec3::X);
+    solver.kick(1, Vec3::X);
+    let (mut tries, mut report) = (Default::default(), Advance::default());
+    assert!(solver.give_way(1, &mut tries, &mut report).expect("a try"));
+    assert!(solver.states().expect("states").iter().all(|s| (s.velocity_m_s - Vec3::X).length() < 1e-5));
+    assert!(!solver.give_way(1, &mut tries, &mut report).expect("no more"));
+    let states = solver.states().expect("states");
+    assert!(states.iter().all(|s| if s.object() == 0 { s.velocity_m_s == Vec3::ZERO } else { s.velocity_m_s == Vec3::X }));
+    assert_eq!(report.mended[&0], 2 * states.iter().filter(|s| s.object() == 0).count() as u64);
+}
+
+/// Under a logarithm of no volume it would push for ever, and nothing would turn it back.
+#[test]
+fn neo_hookean_matter_that_was_turned_inside_out_gains_no_energy() {
+    let cell_m = 0.05;
+    let substance = Substance::Elastic(ElasticModel::NeoHookean);
+    let mut solver = solver(Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(cell_m) }, &of(substance, Vec3::ZERO, cell_m, 1e4));
+    solver
+        .edit(|s| {
+            if s.index % 7 == 0 {
+                s.set_f(Mat3::from_diagonal(Vec3::new(1.0, 1.0, -0.3)))
+            }
+        })
+        .expect("an edit");
+    let report = frames(&mut solver, 2);
+    assert!(report.mended[&0] > 0 && report.softened.is_empty(), "{report:?}");
+    let states = solver.states().expect("states");
+    assert!(states.iter().all(|s| s.f().determinant() > 0.0));
+    let kinetic_j: f32 = states.iter().map(|s| 0.5 * s.mass_kg * s.velocity_m_s.length_squared()).sum();
+    // What each of them held as neo-Hookean matter that is flattened to 0.3 holds.
+    let held_j: f32 =
+        states.iter().filter(|s| s.index % 7 == 0).map(|s| s.volume_m3 * 0.5 * s.lambda_pa * 0.3f32.ln().powi(2) + s.volume_m3 * s.mu_pa).sum();
+    assert!(kinetic_j < held_j, "{kinetic_j} J of {held_j} J");
 }
