@@ -166,6 +166,17 @@ fn a_collider_inside_an_object_is_kept_clear_and_bursts_nothing() {
     }
 }
 
+/// Of a millimetre, where little is followed: what a body is pushed with at once is no more than the rest of it may have.
+#[test]
+fn a_body_is_pushed_into_soft_matter_no_faster_than_is_followed() {
+    let cell_m = 1e-4;
+    let both = joined(of(Substance::default(), Vec3::ZERO, cell_m, 50.0), of(STONE, Vec3::new(0.0, 0.0, 4.0), cell_m, 1e5));
+    let mut solver = solver(Settings { frame_s: 1e-3, substeps_most: 20, gravity_m_s2: Vec3::ZERO, ..Settings::new(cell_m) }, &both);
+    solver.kick(1, Vec3::new(0.0, 0.0, -200.0));
+    let report = frames(&mut solver, 1);
+    assert!(report.mended.is_empty() && report.retries <= 1, "{report:?}");
+}
+
 #[test]
 fn what_is_no_number_is_made_one_from_what_is_around_it_and_that_is_said() {
     let cell_m = 0.05;
