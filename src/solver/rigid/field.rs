@@ -18,6 +18,8 @@ const BAND: f32 = 1.5;
 const LEAST_ACROSS: f32 = 24.0;
 /// Voxels around a body.
 const MARGIN_VOXELS: f32 = 3.0;
+/// Density at a surface, the kernel's of a plane.
+const OUTSIDE: f32 = 0.5;
 /// Where no density within [`THIN_SPACINGS`] reaches this, the body is too thin for the kernel.
 const THIN: f32 = 0.7;
 /// See [`THIN`].
@@ -76,12 +78,13 @@ impl Field {
 
     fn fill(&mut self, cloud: &Cloud) {
         let width_m = (KERNEL_SPACINGS * cloud.spacing_m).max(KERNEL_VOXELS * self.voxel_m);
-        let density = self.density(cloud, width_m);
+        let mut density = self.density(cloud, width_m);
+        let share = self.crush(&mut density);
         let per_voxel = width_m / self.voxel_m;
         let profile = Profile::new();
         let mut values: Vec<f32> = density.iter().map(|&d| per_voxel * profile.distance_of(d)).collect();
         self.add_cores(cloud, &density, &mut values);
-        let shift = self.level_of_volume(&values, cloud.volumes_m3.iter().map(|&v| f64::from(v)).sum());
+        let shift = self.level_of_volume(&values, f64::from(share) * cloud.volumes_m3.iter().map(|&v| f64::from(v)).sum::<f64>());
         values.iter_mut().for_each(|v| *v -= shift);
         let known: Vec<bool> = values.iter().map(|v| v.abs() < BAND * per_voxel).collect();
         self.redistance(&mut values, &known);
@@ -110,6 +113,19 @@ impl Field {
             }
         }
         density
+    }
+
+    /// What was crushed before it became a body is no larger than where its particles are: around them is nothing. The share
+    /// of its density that is left.
+    fn crush(&self, density: &mut [f32]) -> f32 {
+        let at_edge = |i: usize| (self.node(i).cmpeq(UVec3::ZERO) | (self.node(i) + 1).cmpeq(self.size)).any();
+        let most = (0..self.len()).filter(|&i| at_edge(i)).map(|i| density[i]).fold(0.0, f32::max);
+        if most < OUTSIDE {
+            return 1.0;
+        }
+        let share = 0.5 * OUTSIDE / most;
+        density.iter_mut().for_each(|d| *d *= share);
+        share
     }
 
     /// What is thinner than the kernel keeps a solid core around each of its particles.
@@ -355,6 +371,15 @@ mod tests {
 
     fn cloud_of(points_m: &[Vec3], volumes_m3: &[f32], spacing_m: f32) -> Field {
         Field::of(&Cloud { points_m, volumes_m3, spacing_m }, 64 * 64 * 64)
+    }
+
+    #[test]
+    fn what_was_crushed_to_a_point_has_a_surface_about_it() {
+        let cloud = Cloud { points_m: &[Vec3::ONE; 500], volumes_m3: &[1e-3; 500], spacing_m: 0.1 };
+        let field = Field::of(&cloud, 32 * 32 * 32);
+        assert!(field.at(Vec3::ONE).distance_m < 0.0);
+        let (points, _) = field.surface(512);
+        assert!(points.len() > 50 && points.iter().all(|p| (0.02..0.1).contains(&p.distance(Vec3::ONE))), "{} points", points.len());
     }
 
     #[test]
