@@ -220,7 +220,8 @@ fn hung(gaussians: &Gaussians, grid: &grid::Grid, sections: &Sections) -> Vec<(u
 fn hanging(threads: usize, gaussians: usize, of: usize) -> String {
     let share = 100.0 * gaussians as f32 / of as f32;
     format!(
-        "{threads} threads too slender to carry themselves ({share:.1} % of the Gaussians) have no particles of their own and follow what they hang on"
+        "{threads} stems or threads ({share:.1} % of the Gaussians) are too thin to stand by themselves: they go along with what they hang on, and do not \
+         bend, swing or break on their own; made of rigid, flowing or loose stuff (\"steel\", \"water\", \"sand\") they are simulated too"
     )
 }
 

@@ -378,7 +378,7 @@ fn threads_that_no_stiffness_holds_are_no_matter_and_follow_what_they_hang_on() 
     for solid in [&draft, &full] {
         assert_eq!(inside(solid, Vec3::new(0.13, -0.3, 0.0), Vec3::ONE), 0, "the tendril is matter: {:?}", solid.warnings);
         assert!(inside(solid, Vec3::new(-0.05, -0.03, 0.2), Vec3::new(0.0, 0.03, 0.3)) > 10, "the stem is none");
-        assert!(solid.warnings.iter().any(|w| w.starts_with("1 threads")), "{:?}", solid.warnings);
+        assert!(solid.warnings.iter().any(|w| w.starts_with("1 stems or threads")), "{:?}", solid.warnings);
     }
     assert_eq!(draft.hung, full.hung);
     let hung: Vec<u32> = draft.hung.iter().map(|h| h.0).collect();

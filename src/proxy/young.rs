@@ -111,9 +111,11 @@ fn warnings(value_pa: f64, needed_pa: f64) -> Vec<String> {
     let short = needed_pa > value_pa;
     let text = || {
         format!(
-            "to stand by itself with room to spare it would need a stiffness of {} and gets {}, the most that is chosen unasked",
+            "it is so slender that it will sway and sag under its own weight: to stand with room to spare it would need a stiffness of {}, and {} is the \
+             most that is chosen unasked; \"stiffness {}\" gives it more",
             pascals(needed_pa),
-            pascals(value_pa)
+            pascals(value_pa),
+            pascals(needed_pa)
         )
     };
     short.then(text).into_iter().collect()

@@ -147,9 +147,9 @@ impl Solver {
         self.replace(states);
         if !report.converged && report.residual >= WORTH_SAYING {
             report.warnings.push(format!(
-                "the captured pose does not quite balance: {:.1} % of weight is left over after {} rounds, and it will settle a little",
-                report.residual * 100.0,
-                report.iterations
+                "it will sag or shift a little in the first moments: {:.1} % of its weight found nothing to carry it as captured; \"stiffer\" makes that \
+                 less, \"hold the base\" steadies it",
+                report.residual * 100.0
             ));
         }
         Ok(report)

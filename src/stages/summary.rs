@@ -55,9 +55,12 @@ pub(super) fn of_forces(totals: &SolverTotals) -> Vec<String> {
         .then(|| format!("forces would have brought particles beyond {} m/s {} times: they were held there", limits::SPEED_M_S, totals.limited));
     let held = (totals.held_m_s > 0.0).then(|| {
         format!(
-            "something would have been faster than {:.3e} m/s, the most that the substeps of a frame follow, and was held there: use a higher time.fps or \
-             solver.substeps_most, or a smaller solver.cells_across",
-            totals.held_m_s
+            "something would have been faster than {:.3e} m/s, the most that the substeps of a frame follow, and was held there: use a higher time.fps \
+             (up to {}) or solver.substeps_most (up to {}), or a smaller solver.cells_across (down to {})",
+            totals.held_m_s,
+            limits::FPS,
+            limits::SUBSTEPS.1,
+            limits::CELLS_ACROSS.0
         )
     });
     undefined.chain(limited).chain(held).collect()
@@ -104,7 +107,7 @@ pub(super) fn of_crushed(spec: &Spec, metrics: &Metrics) -> Vec<String> {
     crushed
         .map(|(o, ratio)| {
             format!(
-                "{}: was crushed to {:.0} % of its volume and stays so: it is too soft for what hits it, use a higher material.young_pa",
+                "{}: was crushed to {:.0} % of its volume and stays so: it is too soft for what hits it, \"stiffer\" or a higher material.young_pa helps",
                 o.name,
                 100.0 * ratio.max(0.0)
             )

@@ -193,9 +193,12 @@ fn warn_of_softness(matter: &mut Matter, object: &Object, auto: &YoungAuto, youn
         matter.notes.extend(auto.notes.iter().map(|n| format!("{}: {n}", object.name)));
     } else if object.rest == Rest::AsCaptured && young_pa < auto.value_pa / 4.0 {
         matter.warnings.push(format!(
-            "{}: at {young_pa:.3e} Pa its most slender part cannot carry its own weight and will sag; it stands by itself from about {:.1e} Pa",
+            "{}: with a stiffness of {:.3} kPa its most slender part cannot carry its own weight and will sag; it stands from about {:.0} kPa on, \
+             \"stiffness {:.0} kPa\"",
             object.name,
-            auto.value_pa / 4.0
+            young_pa / 1e3,
+            auto.value_pa / 4e3,
+            auto.value_pa / 4e3
         ));
     }
 }
