@@ -141,8 +141,17 @@ mod tests {
         // Shorter frames carry less stiffness, and the kept state holds what was carried.
         let gpu = Gpu::shared_for_tests().unwrap();
         let camera = Camera { eye_m: [0.0, -3.0, 1.0], target_m: [0.0; 3], fov_deg: 40.0, orbit_deg_s: 0.0 };
-        let resolved =
-            Resolved { duration_s: 2.0, frames: 101, ground_m: 0.0, cell_m: 0.02, size: [640, 360], camera, reframed: false, leaves: false };
+        let resolved = Resolved {
+            duration_s: 2.0,
+            frames: 101,
+            ground_m: 0.0,
+            cell_m: 0.02,
+            size: [640, 360],
+            camera,
+            reframed: false,
+            leaves: false,
+            cut: false,
+        };
         let key = |spec: &Spec| prestress(spec, &still(spec, "scene".to_owned(), &resolved), &resolved, &gpu);
         let fifty = Spec::of_scene("vase.splat");
         let mut other = fifty.clone();

@@ -63,6 +63,11 @@ pub(super) fn run(
         sink.note(if spec.camera == Auto::Auto { LONG_WAY } else { OUT_OF_SIGHT });
     }
 
+    if ready.resolved.cut {
+        let ends_s = ready.resolved.duration_s;
+        sink.note(&format!("the run ends at {ends_s} s, while something slides or is driven on: \"for {:.0} s\" shows more of it", 2.0 * ends_s));
+    }
+
     let wants_pictures = options.render;
     let pictures_hit = wants_pictures && plan.stage(StageName::Picture).is_some_and(|s| s.action == Action::Hit);
     let album = if pictures_hit { Album::open(&engine.store, &ready.picture)? } else { None };

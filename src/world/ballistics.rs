@@ -13,6 +13,8 @@ use glam::DVec3;
 const SETTLE_S: f64 = 0.8;
 /// Shortest and longest automatic duration, seconds.
 const DURATION_S: (f64, f64) = (2.0, 8.0);
+/// What slides, drifts or is driven on and on is shown for so long after the last landing or event.
+const TAIL_S: f64 = 3.0;
 /// Friction taken where the spec says none, so that a slide ends.
 const LEAST_FRICTION: f64 = 0.05;
 /// Slower bounces are none.
@@ -25,6 +27,8 @@ pub struct Path {
     pub points: Vec<DVec3>,
     /// When it has landed and stopped.
     pub rests_s: f64,
+    /// The last moment that must be seen: a landing, an event, the end of what drives or leads it.
+    pub needs_s: f64,
     /// When it first stands on something.
     pub lands_s: Option<f64>,
     /// Where it comes apart and flows, and how far from its middle it gets.
@@ -72,6 +76,11 @@ impl Drives {
         self.spans.iter().map(|s| s.1).fold(0.0, f64::max)
     }
 
+    /// When the last of them begins or ends; what goes on for ever does not end.
+    fn turns_s(&self) -> f64 {
+        self.spans.iter().map(|s| if s.1.is_finite() { s.1 } else { s.0 }).fold(0.0, f64::max)
+    }
+
     /// Change of velocity over a step.
     fn change(&self, body: &Body, time_s: f64, step_s: f64) -> DVec3 {
         let acting = || self.spans.iter().filter(|s| s.0 < time_s + step_s && s.1 > time_s);
@@ -111,10 +120,13 @@ pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, ground_m: f64, u
     }
     travel(&mut body, now, until_s.max(now), &ground, &drives, &mut path);
     path.rests_s = path.rests_s.max(drives.end_s().min(until_s));
-    let changed = spec.events.iter().filter(|e| e.object == thing.name && e.effects() != ["push_m_s"]).filter_map(|e| e.at_s);
+    let own = || spec.events.iter().filter(|e| e.object == thing.name);
+    let changed = own().filter(|e| e.effects() != ["push_m_s"]).filter_map(|e| e.at_s);
     path.rests_s = path.rests_s.max(changed.fold(0.0, f64::max).min(until_s));
+    path.needs_s = own().filter_map(|e| e.at_s).fold(path.needs_s.max(drives.turns_s()), f64::max).min(until_s);
     if let Some(flow) = spread::of(spec, thing, facts, path.lands_s, until_s) {
         path.rests_s = path.rests_s.max(flow.until_s.min(until_s));
+        path.needs_s = path.needs_s.max(flow.until_s.min(until_s));
         path.puddle = Some((body.at, flow.radius_m));
     }
     path
@@ -171,6 +183,7 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Dri
         if let Some(at) = ground.held_at(now + step_s) {
             if at != body.at {
                 path.rests_s = path.rests_s.max(now + step_s);
+                path.needs_s = path.needs_s.max(now + step_s);
             }
             (body.at, body.velocity) = (at, DVec3::ZERO);
             path.points.push(at);
@@ -213,16 +226,23 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Dri
         path.points.push(body.at);
         if body.at != before {
             path.rests_s = path.rests_s.max(now);
+            // What nothing draws back never lands, and what is driven about has no flight of its own.
+            if flying && gravity.z < 0.0 && change == DVec3::ZERO {
+                path.needs_s = path.needs_s.max(now);
+            }
         }
     }
 }
 
-/// The automatic duration: until everything has landed and settled, 2 to 8 s, in whole frames.
-pub fn duration_s(spec: &Spec, facts: &[ObjectFacts], ground_m: f64) -> f64 {
-    let rests = facts.iter().enumerate().map(|(i, f)| predict(spec, i, f, ground_m, DURATION_S.1).rests_s).fold(0.0, f64::max);
-    let wanted = if rests > 0.0 { rests + SETTLE_S } else { 0.0 };
+/// The automatic duration, in seconds and whole frames, and whether something is predicted to move on after it: until
+/// everything has landed and settled, but no longer than [`TAIL_S`] for the sake of what slides or is driven on, 2 to 8 s.
+pub fn duration_s(spec: &Spec, facts: &[ObjectFacts], ground_m: f64) -> (f64, bool) {
+    let paths: Vec<Path> = facts.iter().enumerate().map(|(i, f)| predict(spec, i, f, ground_m, DURATION_S.1)).collect();
+    let last = |pick: fn(&Path) -> f64| paths.iter().map(pick).fold(0.0, f64::max);
+    let (rests, shown) = (last(|p| p.rests_s), last(|p| p.needs_s) + TAIL_S);
+    let wanted = if rests > 0.0 { rests.min(shown) + SETTLE_S } else { 0.0 };
     let fps = f64::from(spec.time.fps);
-    (wanted.clamp(DURATION_S.0, DURATION_S.1) * fps - 1e-6).ceil() / fps
+    ((wanted.clamp(DURATION_S.0, DURATION_S.1) * fps - 1e-6).ceil() / fps, rests > shown || rests >= DURATION_S.1)
 }
 
 #[cfg(test)]
@@ -257,7 +277,7 @@ mod tests {
 
     #[test]
     fn a_thing_left_alone_is_shown_for_two_seconds() {
-        assert_eq!(duration_s(&spec(), &facts(), 0.0), 2.0);
+        assert_eq!(duration_s(&spec(), &facts(), 0.0).0, 2.0);
     }
 
     #[test]
@@ -266,10 +286,10 @@ mod tests {
         spec.objects[0].velocity_m_s = [0.0, 0.0, (2.0f64 * 9.81 * 0.3).sqrt()];
         let apex = |spec: &Spec| predict(spec, 0, &facts()[0], 0.0, 8.0).points.iter().map(|p| p.z).fold(0.0, f64::max);
         assert!((apex(&spec) - 0.3).abs() < 0.02);
-        let earth_s = duration_s(&spec, &facts(), 0.0);
+        let earth_s = duration_s(&spec, &facts(), 0.0).0;
         spec.world.gravity_m_s2 = [0.0, 0.0, -1.62];
         assert!((apex(&spec) - 0.3 * 9.81 / 1.62).abs() < 0.05);
-        assert!(duration_s(&spec, &facts(), 0.0) > earth_s);
+        assert!(duration_s(&spec, &facts(), 0.0).0 > earth_s);
     }
 
     #[test]
@@ -281,10 +301,10 @@ mod tests {
         let lowest = |spec: &Spec| predict(spec, 0, &facts()[0], -0.5, 4.0).points.iter().map(|p| p.z).fold(0.0, f64::min);
         spec.objects[0].velocity_m_s = [0.0, 0.5, 0.0];
         assert_eq!(lowest(&spec), 0.0, "it stops on the table");
-        let stays_s = duration_s(&spec, &facts(), -0.5);
+        let stays_s = duration_s(&spec, &facts(), -0.5).0;
         spec.objects[0].velocity_m_s = [0.0, 2.0, 0.0];
         assert!((lowest(&spec) + 0.5).abs() < 1e-9);
-        assert!(duration_s(&spec, &facts(), -0.5) > stays_s);
+        assert!(duration_s(&spec, &facts(), -0.5).0 > stays_s);
     }
 
     #[test]
@@ -320,8 +340,27 @@ mod tests {
     fn a_late_push_lengthens_the_film() {
         let mut spec = spec();
         spec.events.push(Event { push_m_s: Some([1.0, 0.0, 0.0]), ..Event::at("push", "vase", 2.5) });
-        let duration = duration_s(&spec, &facts(), 0.0);
+        let duration = duration_s(&spec, &facts(), 0.0).0;
         assert!(duration > 3.0 && duration <= 8.0, "{duration}");
         assert!((duration * 50.0).fract().abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_goes_on_and_on_is_shown_for_a_while_and_a_landing_whole() {
+        let mut spec = spec();
+        spec.world.gravity_m_s2 = [0.0, 0.0, -1.62];
+        spec.objects[0].velocity_m_s = [1.5, 0.0, 0.0];
+        // Friction takes six seconds on the moon.
+        assert_eq!(duration_s(&spec, &facts(), 0.0), (3.8, true));
+        spec.objects[0].velocity_m_s = [0.0, 0.0, 4.4];
+        let (jump_s, cut) = duration_s(&spec, &facts(), 0.0);
+        assert!(jump_s > 2.0 * 4.4 / 1.62 && !cut, "{jump_s}");
+        spec.world.gravity_m_s2 = [0.0; 3];
+        assert_eq!(duration_s(&spec, &facts(), 0.0), (3.8, true));
+        spec.objects[0].velocity_m_s = [0.0; 3];
+        spec.forces.push(Force::constant("pull", "vase", 1.0, Until::End, [0.0, 3.0, 0.0]));
+        assert_eq!(duration_s(&spec, &facts(), 0.0), (4.8, true));
+        spec.forces[0].to_s = Until::Time(1.5);
+        assert_eq!(duration_s(&spec, &facts(), 0.0), (5.3, true));
     }
 }

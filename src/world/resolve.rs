@@ -32,12 +32,17 @@ pub struct Resolved {
     pub reframed: bool,
     /// The predicted path leaves the picture.
     pub leaves: bool,
+    /// The automatic duration ends before what is predicted to move does.
+    pub cut: bool,
 }
 
 /// Fills in everything that does not need a solid.
 pub fn resolve(spec: &Spec, prepared: &Prepared, draft: bool, size: Option<[u32; 2]>, session: Option<Camera>) -> Resolved {
     let facts = prepared.object_facts(spec);
-    let duration_s = spec.time.duration_s.unwrap_or(ballistics::duration_s(spec, &facts, prepared.ground_m));
+    let (duration_s, cut) = match spec.time.duration_s {
+        Auto::Value(duration_s) => (duration_s, false),
+        Auto::Auto => ballistics::duration_s(spec, &facts, prepared.ground_m),
+    };
     let frames = (duration_s * f64::from(spec.time.fps) + 1e-6).floor() as u32 + 1;
     let cells = spec.solver.cells_across.unwrap_or(if draft { CELLS_ACROSS_DRAFT } else { CELLS_ACROSS_FULL });
     let longest = facts.iter().flat_map(|f| (0..3).map(|i| f.high_m[i] - f.low_m[i])).fold(0.0, f64::max);
@@ -53,6 +58,7 @@ pub fn resolve(spec: &Spec, prepared: &Prepared, draft: bool, size: Option<[u32;
         camera,
         reframed,
         leaves,
+        cut,
     }
 }
 
