@@ -1,5 +1,6 @@
 //! What is known of a scene before anything moves: enough to turn "drop it from a metre" into numbers.
 
+use super::Seam;
 use crate::spec::{Axis, Camera};
 
 /// A scene and its spec, measured in the captured pose. World frame, metres.
@@ -7,8 +8,8 @@ use crate::spec::{Axis, Camera};
 pub struct Facts {
     /// One entry for each object of the spec, in its order.
     pub objects: Vec<ObjectFacts>,
-    /// Of each, the share of its height at which its colours above and below differ most: where a bouquet leaves its vase.
-    pub seams: Vec<f64>,
+    /// Of each, the height at which it parts in two: where a bouquet leaves its vase.
+    pub seams: Vec<Seam>,
     /// Height of the ground plane.
     pub ground_m: f64,
     /// The camera that the spec resolves to.

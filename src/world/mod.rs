@@ -26,5 +26,6 @@ pub use facts::{Facts, ObjectFacts};
 pub use figure::Figure;
 pub use prepared::{Prepared, support_below};
 pub use resolve::{CELLS_ACROSS_DRAFT, CELLS_ACROSS_FULL, Resolved, resolve};
+pub use seam::{Mark, Seam};
 pub use stuff::Stuff;
 pub use vain::said as asked_in_vain;

@@ -99,6 +99,25 @@ fn versions_can_be_listed_shown_and_compared() {
 }
 
 #[test]
+fn words_are_rehearsed_and_leave_nothing_behind() {
+    let desk = Desk::new();
+    let bare = desk.run(&["plan", "block.ply", "-p", "jump 10 cm", "-p", "softer", "--json"]);
+    assert_eq!(bare.status.code(), Some(0), "{}", text(&bare.stderr));
+    let told: Value = serde_json::from_slice(&bare.stdout).unwrap();
+    assert_eq!((told["turns"].as_array().map(Vec::len), told["stages"].as_array().map(Vec::len)), (Some(2), Some(5)));
+    assert_eq!(told["turns"][0]["edits"][0]["path"], "object.block.velocity_m_s");
+    assert!(!desk.path(".phystalk").exists() && !desk.path("store").exists() && !desk.path("out").exists());
+    desk.expect(0, &small(&["exec", "block.ply", "-p", "turn it into water at 0.1 s", "--no-render"]));
+    let said = text(&desk.expect(0, &["plan", "-p", "make it heavier"]).stdout);
+    assert!(said.contains("still in force: block turns into water at 0.1 s") && said.contains("density_kg_m3"), "{said}");
+    assert!(text(&desk.expect(0, &["log"]).stdout).lines().all(|line| !line.contains("v2")), "no version was made");
+    assert!(text(&desk.expect(0, &["show"]).stdout).contains("turn it into water"), "the newest version is shown");
+    assert!(text(&desk.expect(1, &["plan", "-p", "frobnicate it"]).stderr).contains("frobnicate"));
+    let compared = text(&desk.expect(0, &small(&["exec", "--continue", "-p", "compare with the first"])).stdout);
+    assert!(compared.contains("v1 and v1 are the same"), "{compared}");
+}
+
+#[test]
 fn words_that_mean_nothing_make_no_version() {
     let desk = Desk::new();
     let output = desk.expect(1, &small(&["exec", "block.ply", "-p", "frobnicate the xyzzy", "--json"]));
@@ -248,6 +267,11 @@ fn stills_are_drawn_for_one_camera_or_many() {
     assert!(desk.path("many_0.exr").is_file() && desk.path("many_1.exr").is_file());
     desk.expect(2, &["still", "block.ply", "--camera", "two.json", "-o", "many.png"]);
     desk.expect(2, &["still", "block.ply", "--camera", "one.json", "-o", "one.jpg"]);
+    // Without a camera all of it is in the picture.
+    desk.expect(0, &["still", "block.ply", "--size", "64x48", "-o", "usual.png"]);
+    let picture = phystalk::export::read_png(&desk.path("usual.png")).unwrap();
+    let white = |x: usize, y: usize| picture.rgba8[(y * 64 + x) * 4..][..3] == [255; 3];
+    assert!(!white(32, 24) && (0..64).all(|x| white(x, 0) && white(x, 47)) && (0..48).all(|y| white(0, y) && white(63, y)));
 }
 
 #[test]
@@ -255,6 +279,8 @@ fn scenes_are_described_and_converted() {
     let desk = Desk::new();
     let info: Value = serde_json::from_slice(&desk.expect(0, &["scene", "info", "block.ply", "--json"]).stdout).unwrap();
     assert_eq!((info["gaussians"].as_u64(), info["sh_degree"].as_u64(), info["format"].as_str()), (Some(512), Some(0), Some("ply")));
+    let short: Value = serde_json::from_slice(&desk.expect(0, &["scene", "block.ply", "--json"]).stdout).unwrap();
+    assert_eq!(short, info);
     for key in ["bounds", "up_guess", "floaters"] {
         assert!(!info[key].is_null(), "{key}");
     }

@@ -1,6 +1,6 @@
 //! `phystalk scene info FILE` and `phystalk convert IN OUT`.
 
-use super::exit::Failure;
+use super::exit::{Failure, Kind};
 use super::flags::Flags;
 use super::output;
 use clap::{Args, Subcommand};
@@ -9,9 +9,12 @@ use serde_json::json;
 use std::path::PathBuf;
 
 #[derive(Args, Debug)]
+#[command(args_conflicts_with_subcommands = true, arg_required_else_help = true)]
 pub struct Arguments {
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
+    /// Splat file: the same as `info FILE`
+    file: Option<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -32,7 +35,10 @@ pub struct ConvertArguments {
 }
 
 pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
-    let Command::Info { file } = &arguments.command;
+    let named = arguments.command.as_ref().map(|Command::Info { file }| file);
+    let Some(file) = named.or(arguments.file.as_ref()) else {
+        return Err(Failure::new(Kind::Usage, "which file? phystalk scene info FILE.ply"));
+    };
     let loaded = scene::read(file)?;
     loaded.warnings.iter().filter(|_| !flags.quiet).for_each(|w| output::note(format!("warning: {w}")));
     let info = scene::info(&loaded);

@@ -16,6 +16,31 @@ pub fn store(flags: &Flags) -> Result<Store, Failure> {
     Ok(Store::open(flags.store.as_deref(), &here)?)
 }
 
+/// The store that the flags name where there is one, else one that is gone when its guard is: for what leaves nothing behind.
+pub fn store_or_none(flags: &Flags) -> Result<(Store, Option<Scratch>), Failure> {
+    let here = std::env::current_dir().map_err(|e| Failure::file("use", Path::new("."), &e))?;
+    let known = |dir: PathBuf| dir.join("format").exists();
+    let there = match &flags.store {
+        Some(dir) => known(here.join(dir)),
+        None => here.ancestors().any(|folder| known(folder.join(".phystalk"))),
+    };
+    if there {
+        return Ok((store(flags)?, None));
+    }
+    let dir = std::env::temp_dir().join(format!("phystalk-{}", std::process::id()));
+    let scratch = Scratch(dir.clone());
+    Ok((Store::open(Some(&dir), &here)?, Some(scratch)))
+}
+
+/// A folder that goes when this does.
+pub struct Scratch(PathBuf);
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
 /// The engine of this process.
 pub fn engine(flags: &Flags, store: Store) -> Engine {
     Engine::new(store, flags.device_request())
@@ -126,9 +151,14 @@ pub fn default_out(flags: &Flags, session: &str) -> PathBuf {
     flags.out.clone().unwrap_or_else(|| Path::new("phystalk-out").join(session))
 }
 
-/// A spec by file or by version of the session.
+/// Whether an argument names a file or the built-in scene rather than a version.
+pub fn is_file(argument: &str) -> bool {
+    argument.contains(['.', '/', '\\', ':'])
+}
+
+/// A spec by file, that of a scene by itself, or of a version of the session.
 pub fn spec_by_name(name: &str, flags: &Flags) -> Result<(Spec, String), Failure> {
-    if is_spec(name) {
+    if is_file(name) {
         return Ok((spec_of(name, flags)?, name.to_owned()));
     }
     let store = store(flags)?;

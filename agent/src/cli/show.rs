@@ -8,14 +8,14 @@ use serde_json::json;
 
 #[derive(Args, Debug)]
 pub struct Arguments {
-    /// Which version, as v3
-    version: String,
+    /// Which version, as v3 [default: the newest]
+    version: Option<String>,
 }
 
 pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     let store = setup::store(flags)?;
     let session = setup::session(flags, &store)?;
-    let version = session.find(&arguments.version)?;
+    let version = session.find(arguments.version.as_deref().unwrap_or("last"))?;
     let spec = session.spec_of(&version.name)?;
     if flags.json {
         return output::json(&json!({ "session": session.name(), "version": version, "spec": spec.to_value() }));

@@ -5,8 +5,10 @@ use super::exit::{Failure, Kind};
 use super::flags::Flags;
 use super::{output, setup};
 use clap::{Args, ValueEnum};
+use glam::{Mat4, Vec3};
+use phystalk::export;
 use phystalk::render::{Image, Profile, RenderOptions, View};
-use phystalk::{export, scene};
+use phystalk::scene::{self, Loaded, SceneFrame};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -15,8 +17,9 @@ pub struct Arguments {
     /// Splat file, .ply or .splat
     scene: PathBuf,
     /// Camera, or list of cameras, with OpenCV axes: width, height, fx, fy, cx, cy, world_to_camera, background
+    /// [default: from in front and a little above, holding all of the scene]
     #[arg(long, value_name = "FILE.json")]
-    camera: PathBuf,
+    camera: Option<PathBuf>,
     /// Picture to write, .png or .exr; with a list of cameras its name holds %d, which counts from 0
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -27,6 +30,13 @@ pub struct Arguments {
     #[arg(long, default_value_t = 0.01, value_parser = parse_near)]
     near: f32,
 }
+
+/// Where the usual camera stands from the middle, its field of view, and the share of Gaussians on each side that it need
+/// not hold.
+const STANDS: [f32; 3] = [-0.87, -0.49, 0.3];
+const SIZE: [u32; 2] = [1280, 720];
+const FOV_DEG: f32 = 45.0;
+const OUTERMOST: f32 = 0.005;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ProfileFlag {
@@ -65,9 +75,10 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
         Some("exr") => Kinds::Exr,
         _ => return Err(Failure::new(Kind::Usage, format!("{} is neither .png nor .exr", arguments.output.display()))),
     };
-    let views = read_views(&arguments.camera, flags.size)?;
-    let outputs = output_paths(&arguments.output, &views)?;
+    let given = arguments.camera.as_ref().map(|camera| read_views(camera, flags.size)).transpose()?;
     let loaded = scene::read(&arguments.scene)?;
+    let views = given.unwrap_or_else(|| Views { list: vec![usual_view(&loaded, flags.size)], is_list: false });
+    let outputs = output_paths(&arguments.output, &views)?;
     loaded.warnings.iter().filter(|_| !flags.quiet).for_each(|w| output::note(format!("warning: {w}")));
     let exr = kind == Kinds::Exr;
     let options = RenderOptions { profile: arguments.profile.into(), near: arguments.near, colour: exr, depth: exr, ..RenderOptions::default() };
@@ -87,6 +98,30 @@ fn write(image: &Image, path: &Path, kind: Kinds) -> Result<(), Failure> {
         (Kinds::Exr, Some(colour)) => Ok(export::write_exr(path, image.size, colour, image.depth.as_deref())?),
         _ => Ok(export::write_png(path, image.size, &image.rgba8)?),
     }
+}
+
+/// A view that holds the scene without its outermost Gaussians: from the side that the automatic camera stands on, a little
+/// above, on white.
+fn usual_view(loaded: &Loaded, size: Option<[u32; 2]>) -> View {
+    let size = size.unwrap_or(SIZE);
+    let world = SceneFrame { up: loaded.up().axis, metres_per_unit: 1.0 }.rotation();
+    let mut axes = [0, 1, 2].map(|axis| loaded.gaussians.mean.iter().map(|&p| (world * p)[axis]).collect::<Vec<f32>>());
+    let [low, high] = [OUTERMOST, 1.0 - OUTERMOST].map(|share| {
+        let at = |values: &mut Vec<f32>| {
+            values.sort_by(f32::total_cmp);
+            values.get((share * values.len().saturating_sub(1) as f32) as usize).copied().unwrap_or(0.0)
+        };
+        let [x, y, z] = &mut axes;
+        Vec3::new(at(x), at(y), at(z))
+    });
+    let scales = &loaded.gaussians.scale;
+    // A Gaussian shows to about three times its scale.
+    let wide = 3.0 * scales.iter().map(|s| s.max_element()).sum::<f32>() / scales.len().max(1) as f32;
+    let (middle, radius) = ((low + high) / 2.0, ((high - low) / 2.0).length() + wide.max(1e-6));
+    let narrow = (0.5 * FOV_DEG.to_radians()).tan() * (size[0] as f32 / size[1] as f32).min(1.0);
+    let eye = middle + Vec3::from(STANDS).normalize() * radius / narrow.atan().sin();
+    let view = View::look_at(eye, middle, FOV_DEG, size).with_background([1.0; 3]);
+    View { world_to_camera: view.world_to_camera * Mat4::from_mat3(world), ..view }
 }
 
 struct Views {

@@ -2,12 +2,15 @@
 
 mod event;
 mod files;
+mod kept;
 mod narrate;
 mod observer;
+mod rehearse;
 mod turn;
 
 pub use event::{Event, Line, Lines};
 pub use narrate::{duration, plan_line, plan_table};
+pub use rehearse::{Rehearsal, rehearse};
 pub use turn::Conversation;
 
 use phystalk::Frame;

@@ -1,7 +1,13 @@
 //! What happened, in words: plans, durations, what a run showed.
 
+use crate::language::say;
+use phystalk::spec::{Spec, Until};
 use phystalk::stages::{Action, Metrics, ObjectMetrics, PlannedStage};
 use phystalk::world::Facts;
+
+/// What moves slower than so many of its heights a second, or than this share of its fastest, only trembles.
+const STILL_HEIGHTS_S: f64 = 0.1;
+const STILL_SHARE: f64 = 0.1;
 
 /// Seconds as people say them.
 pub fn duration(seconds: f64) -> String {
@@ -77,12 +83,40 @@ pub fn details(metrics: &Metrics) -> Vec<String> {
     said
 }
 
-/// What the objects did, one sentence each.
-pub fn outcome(metrics: &Metrics) -> Vec<String> {
-    metrics.objects.iter().map(|(name, object)| sentence(name, object, metrics)).collect()
+/// A run that got longer unasked by at least so much is worth a word.
+const LONGER_S: f64 = 1.0;
+
+/// What an automatic duration grew to.
+pub fn longer(before_s: f64, after_s: f64) -> Option<String> {
+    let text = || {
+        let [before, after] = [before_s, after_s].map(say::seconds);
+        format!("the run lasts {after} instead of {before}, to follow what moves: \"for {before}\" keeps it short")
+    };
+    (after_s - before_s >= LONGER_S).then(text)
 }
 
-fn sentence(name: &str, object: &ObjectMetrics, metrics: &Metrics) -> String {
+/// What the objects did, one sentence each.
+pub fn outcome(metrics: &Metrics, spec: &Spec) -> Vec<String> {
+    metrics.objects.iter().map(|(name, object)| sentence(name, object, metrics, spec)).collect()
+}
+
+/// Whether something is meant to move when the run ends: driven, led, or with nothing that draws it down.
+fn moves_on(name: &str, spec: &Spec) -> bool {
+    let ends_s = |until: Until| if let Until::Time(to_s) = until { to_s } else { f64::INFINITY };
+    let end_s = spec.time.duration_s.unwrap_or(f64::INFINITY);
+    spec.world.gravity_m_s2 == [0.0; 3]
+        || spec.forces.iter().any(|f| f.object == name && f.ends_s() >= end_s)
+        || spec.pins.iter().any(|p| p.object == name && !p.path.is_empty() && ends_s(p.to_s) >= end_s)
+}
+
+/// How fast something still is at the end, metres a second, where that shows: not what trembles after a jump, and not what
+/// was asked to go on.
+fn surprises(name: &str, object: &ObjectMetrics, height_m: f64, spec: &Spec) -> Option<f64> {
+    let (last, most) = (*object.mean_speed_m_s.last()?, object.mean_speed_m_s.iter().copied().fold(0.0, f64::max));
+    (last > STILL_HEIGHTS_S * height_m && last > STILL_SHARE * most && !moves_on(name, spec)).then_some(last)
+}
+
+fn sentence(name: &str, object: &ObjectMetrics, metrics: &Metrics, spec: &Spec) -> String {
     let height = match (object.high_m.first(), object.low_m.first()) {
         (Some(high), Some(low)) => (high - low).max(1e-6),
         _ => 1.0,
@@ -101,9 +135,13 @@ fn sentence(name: &str, object: &ObjectMetrics, metrics: &Metrics) -> String {
     if parts.is_empty() {
         parts.push("stays where it is".to_owned());
     } else {
-        match object.settle_s(metrics.fps) {
-            Some(settled) => parts.push(format!("is at rest from {settled:.2} s")),
-            None => parts.push("still moves at the end".to_owned()),
+        let longer_s = (2.0 * metrics.duration_s).ceil().min(phystalk::spec::limits::TIME_S);
+        match (object.settle_s(metrics.fps), surprises(name, object, height, spec)) {
+            (Some(settled), _) => parts.push(format!("is at rest from {settled:.2} s")),
+            (None, Some(speed)) => {
+                parts.push(format!("still moves at {} a second when the run ends: \"for {longer_s:.0} s\" shows more", length(speed)))
+            }
+            (None, None) => {}
         }
     }
     format!("{name}: {}", parts.join(", "))

@@ -2,15 +2,14 @@
 
 use super::files::Files;
 use super::observer::Observer;
-use super::{Event, Listener, narrate};
+use super::{Event, Listener, kept, narrate, rehearse};
 use crate::cli::exit::{Failure, Kind};
 use crate::history::{Session, Version};
-use crate::language::{self, Reply, VersionRef};
+use crate::language::{Reply, VersionRef};
 use phystalk::Stop;
 use phystalk::gpu::Tier;
 use phystalk::spec::{Auto, Camera, Edit, Spec};
 use phystalk::stages::{Engine, Metrics, Plan, Report, RunOptions};
-use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -184,13 +183,8 @@ impl Conversation {
 
     fn understand_and_run(&mut self, words: &str, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
         let spec = self.session.spec().clone();
-        let facts = self.engine.facts(&spec, Path::new(""), &self.options)?;
         let previous = self.before_head();
-        let engine = RefCell::new(&mut self.engine);
-        // What could not be found out here, the run will explain.
-        let resolved = |path: &str| engine.borrow_mut().automatic(&spec, Path::new(""), &self.options, path).ok().flatten();
-        let context = language::Context { spec: &spec, facts: &facts, resolved: &resolved, previous_spec: previous.as_ref() };
-        let reply = language::understand(words, &context);
+        let reply = rehearse::hear(&mut self.engine, &self.options, &spec, previous.as_ref(), words)?;
         listener.event(Event::Usage { provider: "phrasebook".to_owned(), input_tokens: 0, output_tokens: 0 });
         let from = self.head_name();
         match reply {
@@ -214,6 +208,7 @@ impl Conversation {
                 let version = self.session.back_to(words, &version_name(reference))?;
                 self.made(version, from, &spec, listener, stop)
             }
+            Reply::Compare(from, to) => self.compare(from, to, listener),
             Reply::Refused { reason, not_understood } => {
                 say_not_understood(not_understood, listener);
                 Err(Failure::other(reason))
@@ -234,8 +229,25 @@ impl Conversation {
             return Ok(Ended::Completed(None));
         }
         self.able()?;
+        let longer = rehearse::longer(&mut self.engine, &self.options, &before, &after);
+        let said = kept::said(&before, &after, &edits).into_iter().chain(longer);
+        said.for_each(|text| listener.event(Event::Message { text }));
         let version = self.session.commit(words, &edits, &after)?;
         self.made(version, from, &before, listener, stop)
+    }
+
+    /// What two versions differ in.
+    fn compare(&self, from: VersionRef, to: VersionRef, listener: &mut dyn Listener) -> Result<Ended, Failure> {
+        let [from, to] = [from, to].map(|reference| self.session.find(&version_name(reference)));
+        let (from, to) = (from?, to?);
+        let lines: Vec<String> = from.spec.diff(&to.spec).iter().map(ToString::to_string).collect();
+        let text = if lines.is_empty() {
+            format!("{} and {} are the same", from.name, to.name)
+        } else {
+            format!("from {} ({}) to {} ({}):", from.name, from.words, to.name, to.words)
+        };
+        std::iter::once(text).chain(lines).for_each(|text| listener.event(Event::Message { text }));
+        Ok(Ended::Completed(None))
     }
 
     /// Whether a version could be run: there is a device and a folder for its files. Asked before it
@@ -312,7 +324,7 @@ impl Conversation {
         // Kept of a version that ran to its end: that is how the others are told.
         self.session.keep_resolved(&version.name, serde_json::Value::Object(report.metrics.resolved.clone()))?;
         let details = if self.details { narrate::details(&report.metrics) } else { Vec::new() };
-        narrate::outcome(&report.metrics).into_iter().chain(details).for_each(|text| listener.event(Event::Message { text }));
+        narrate::outcome(&report.metrics, &spec).into_iter().chain(details).for_each(|text| listener.event(Event::Message { text }));
         judge(&report.metrics, &version.name)
     }
 
@@ -350,8 +362,10 @@ impl Conversation {
 
 fn version_name(reference: VersionRef) -> String {
     match reference {
-        VersionRef::First => "v1".to_owned(),
+        VersionRef::First => "first".to_owned(),
         VersionRef::Number(number) => format!("v{number}"),
+        VersionRef::Last => "last".to_owned(),
+        VersionRef::Previous => "previous".to_owned(),
     }
 }
 

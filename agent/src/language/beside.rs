@@ -12,6 +12,9 @@ pub fn understand(reading: &mut Reading, spec: &Spec) {
     count_on(&mut reading.phrases, &reading.tokens);
     hear_contrast(&mut reading.phrases);
     hear_undone(&mut reading.phrases, &reading.tokens);
+    for stretch in reading.phrases.split_mut(|p| p.sense == Sense::Separator) {
+        hear_switch(stretch, &reading.tokens);
+    }
     let mut stretches: Vec<&mut [Phrase]> = reading.phrases.split_mut(|p| p.sense == Sense::Separator).collect();
     hear_sides(&mut stretches);
     let count = stretches.len();
@@ -152,6 +155,44 @@ fn hear_undone(phrases: &mut [Phrase], tokens: &[Token]) {
         let named = tokens[phrases[i].span.start].word == "the";
         if named && phrases[i - 1].sense == Sense::Turn(TurnWord::Undo) && phrases[i - 1].span.len() == 1 {
             phrases[i - 1].sense = Sense::Verb(Verb::Stop);
+        }
+    }
+}
+
+/// "Turn the wind off", "turn the wind down", "reverse the wind": what lasts is ended, made less, or turned round.
+fn hear_switch(stretch: &mut [Phrase], tokens: &[Token]) {
+    let word = |p: &Phrase| tokens[p.span.start].word.as_str();
+    let lasts = |p: &Phrase| matches!(p.sense, Sense::Verb(Verb::Blow | Verb::Pull | Verb::Spin | Verb::Field(_)) | Sense::Property(_));
+    for i in 0..stretch.len() {
+        let single = stretch[i].span.len() == 1;
+        let verb = word(&stretch[i]);
+        let turns = matches!(verb, "turn" | "turns" | "turned" | "switch" | "switched" | "crank" | "dial" | "ramp");
+        let what = stretch.iter().skip(i + 1).position(lasts).map(|at| at + i + 1);
+        let Some(what) = what.filter(|_| single) else { continue };
+        if matches!(verb, "reverse" | "reverses" | "invert" | "inverts" | "flip" | "flips")
+            && stretch[i + 1..what].iter().all(|p| p.sense == Sense::Article)
+        {
+            stretch[i].sense = Sense::Turn(TurnWord::OtherWay);
+            continue;
+        }
+        let next_to = |at: &usize| *at == i + 1 || *at == what + 1;
+        let number = matches!(stretch[what].sense, Sense::Property(_));
+        let how = (i + 1..stretch.len()).filter(next_to).find_map(|at| {
+            Some((
+                at,
+                match word(&stretch[at]) {
+                    "off" => Sense::Verb(Verb::Stop),
+                    "on" => Sense::Filler,
+                    "down" => Sense::Change(-1.0),
+                    "up" => Sense::Change(1.0),
+                    "around" | "round" => Sense::Turn(TurnWord::OtherWay),
+                    _ => return None,
+                },
+            ))
+        });
+        // A number is more or less, and nothing else.
+        if let Some((at, how)) = how.filter(|(_, how)| turns && (!number || matches!(how, Sense::Change(_)))) {
+            (stretch[i].sense, stretch[at].sense) = (how, Sense::Filler);
         }
     }
 }

@@ -337,6 +337,15 @@ impl Clause {
         (both && directed(self) && directed(next)).then(|| verb.clone())
     }
 
+    /// "The vase does not", after what somebody else does: the same verb, denied.
+    fn denies_alone(&self, said: &Clause) -> Option<Clause> {
+        let nouns = |s: &Sense| matches!(s, Sense::Objects(_) | Sense::All | Sense::It | Sense::Article | Sense::Filler | Sense::Part(_));
+        let (denials, rest): (Vec<Phrase>, Vec<Phrase>) = self.phrases.iter().cloned().partition(|p| p.sense == Sense::Negation);
+        let named = rest.iter().any(|p| matches!(p.sense, Sense::Objects(_) | Sense::Part(_)));
+        let verb = said.phrases.iter().rev().find(|p| matches!(p.sense, Sense::Verb(_)))?;
+        (denials.len() == 1 && named && rest.iter().all(|p| nouns(&p.sense))).then(|| Clause::new([rest, denials, vec![verb.clone()]].concat()))
+    }
+
     fn append(&mut self, other: Clause) {
         self.phrases.extend(other.phrases);
         self.taken = vec![false; self.phrases.len()];
@@ -439,6 +448,10 @@ pub fn split(phrases: Vec<Phrase>) -> Vec<Clause> {
     let mut pending: Option<Clause> = None;
     for segment in segments(&phrases) {
         let mut clause = Clause::new(segment.to_vec());
+        if let Some(denial) = clauses.last().filter(|_| pending.is_none()).and_then(|said| clause.denies_alone(said)) {
+            clauses.push(denial);
+            continue;
+        }
         let waits = !clause.has_head() && clause.phrases.iter().any(|p| p.sense == Sense::Wait);
         let belongs = !clause.has_head()
             || clause.starts_with_condition()

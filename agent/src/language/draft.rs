@@ -7,15 +7,26 @@ use super::clauses::when::When;
 use super::directions::Frame;
 use super::reference;
 use super::say;
-use super::sense::Sense;
+use super::sense::{Property, Sense, Verb};
 use super::tokens::Token;
 use glam::{DMat3, DVec3, EulerRot};
 use phystalk::spec::{Auto, Camera, Event, Material, Object, Spec};
-use phystalk::world::ObjectFacts;
+use phystalk::world::{ObjectFacts, Seam};
 use std::ops::Range;
 
 /// Why a clause is refused, as a sentence.
 pub type Refusal = String;
+
+/// More or less of a property, as it was said.
+struct Compared {
+    property: Property,
+    more: bool,
+    /// The clause's verb: what stands alone speaks of any.
+    verb: Option<Verb>,
+    /// Objects, parts and times of the clause.
+    whose: (Vec<usize>, Vec<Sense>),
+    said: String,
+}
 
 /// A spec being changed.
 pub struct Draft<'a> {
@@ -33,6 +44,8 @@ pub struct Draft<'a> {
     pub undone: bool,
     /// Whether the request begins with a "no,": it says otherwise what the newest turn said.
     pub corrects: bool,
+    /// What was asked to be more or less of something: of whom, and which way.
+    compared: Vec<Compared>,
     /// Whether this request sent something up or placed it high: it falls by itself.
     pub aloft: bool,
 }
@@ -41,7 +54,7 @@ impl<'a> Draft<'a> {
     /// Starts from `spec`.
     pub fn new(context: &'a Context<'a>, tokens: &'a [Token], spec: Spec) -> Draft<'a> {
         let undone = spec != *context.spec;
-        Draft { context, tokens, spec, gloss: Vec::new(), subject: None, undone, corrects: false, aloft: false }
+        Draft { context, tokens, spec, gloss: Vec::new(), subject: None, undone, corrects: false, compared: Vec::new(), aloft: false }
     }
 
     /// Some words of the request, as written.
@@ -95,6 +108,26 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// Notes that a clause asks for more or less of a property; refuses the opposite of what was asked before of the same.
+    pub fn compare(&mut self, property: Property, more: bool, clause: &mut Clause) -> Result<(), Refusal> {
+        let of_clause =
+            |s: &Sense| matches!(s, Sense::Part(_) | Sense::Stuff(_) | Sense::Scenery(_) | Sense::Ground | Sense::At(_) | Sense::Moment(_));
+        let kinds = clause.phrases().iter().map(|p| &p.sense).filter(|s| of_clause(s)).cloned().collect();
+        let whose = (self.subjects(clause).unwrap_or_default(), kinds);
+        let word = |s: &Sense| matches!(s, Sense::Quality(p, ..) | Sense::Property(p) if *p == property);
+        let phrase = clause.phrases().iter().find(|p| word(&p.sense)).map(|p| p.span.clone());
+        let said = phrase.map_or_else(|| if more { "more" } else { "less" }.to_owned(), |span| self.words(span));
+        let property = if property == Property::Hardness { Property::Stiffness } else { property };
+        let verb = clause.verb();
+        let opposes =
+            |c: &&Compared| c.property == property && c.more != more && c.whose == whose && (c.verb.is_none() || verb.is_none() || c.verb == verb);
+        if let Some(other) = self.compared.iter().find(opposes) {
+            return Err(format!("\"{}\" and \"{said}\" pull opposite ways: say one of them, or of which part or thing each", other.said));
+        }
+        self.compared.push(Compared { property, more, verb, whose, said });
+        Ok(())
+    }
+
     /// The only object that the newest turn changed.
     fn changed_last(&self) -> Option<usize> {
         let before = self.context.previous_spec?;
@@ -126,11 +159,11 @@ impl<'a> Draft<'a> {
         &mut self.spec.objects[index].material
     }
 
-    /// The share of an object's height at which its colours above and below differ most.
-    pub fn seam(&self, index: usize) -> f64 {
+    /// Where an object parts in two: its flowers from its pot.
+    pub fn seam(&self, index: usize) -> Seam {
         let name = &self.spec.objects[index].name;
         let known = self.context.facts.objects.iter().zip(&self.context.facts.seams).find(|(facts, _)| facts.name == *name);
-        known.map_or(0.5, |(_, seam)| *seam)
+        known.map(|(_, seam)| *seam).unwrap_or_default()
     }
 
     /// What is known of an object's shape. An object without facts is a metre cube on the ground.

@@ -10,6 +10,7 @@
 mod beside;
 mod clause;
 mod clauses;
+mod compare;
 mod directions;
 mod draft;
 mod frames;
@@ -19,13 +20,14 @@ mod numbers;
 mod page;
 mod phrases;
 mod reference;
-mod say;
+pub mod say;
 mod sense;
 mod session;
 #[cfg(test)]
 mod tests;
 mod tokens;
 mod unheeded;
+mod verbs;
 
 use draft::Draft;
 use phrases::{Names, Reading};
@@ -51,6 +53,8 @@ pub enum Reply {
     Redo(u32),
     /// Back to a version.
     BackTo(VersionRef),
+    /// What a version and another one differ in; nothing is changed.
+    Compare(VersionRef, VersionRef),
     /// Nothing is done.
     Refused {
         /// Why, and what would be understood.
@@ -67,6 +71,10 @@ pub enum VersionRef {
     First,
     /// v1, v2, …
     Number(u32),
+    /// The newest.
+    Last,
+    /// The one before the newest.
+    Previous,
 }
 
 /// What a request is about.
@@ -84,8 +92,13 @@ pub struct Context<'a> {
 
 /// Understands a request. The same text and context give the same reply; no text panics.
 pub fn understand(text: &str, context: &Context) -> Reply {
-    let names = Names::new(context.spec.objects.iter().map(|o| o.name.as_str()));
     let mut tokens = tokens::tokenise(text);
+    match compare::understand(&tokens) {
+        Some(Ok((from, to))) => return Reply::Compare(from, to),
+        Some(Err(reason)) => return Reply::Refused { reason, not_understood: Vec::new() },
+        None => {}
+    }
+    let names = Names::new(context.spec.objects.iter().map(|o| o.name.as_str()));
     let frames = frames::count(&mut tokens, context.spec.time.fps);
     let mut reading = phrases::read(tokens, &names);
     reading.corrections.extend(frames);
@@ -101,10 +114,10 @@ pub fn understand(text: &str, context: &Context) -> Reply {
     }
     session::interjections(&mut reading);
     match session::understand(&mut reading) {
-        Ok(session::Turn::None) => edits(&reading, context, context.spec.clone()),
+        Ok(session::Turn::None) => with_corrections(edits(&reading, context, context.spec.clone()), &reading),
         Ok(session::Turn::Reply(reply)) => reply,
         Ok(session::Turn::UndoAnd) => match context.previous_spec {
-            Some(previous) => edits(&reading, context, previous.clone()),
+            Some(previous) => with_corrections(edits(&reading, context, previous.clone()), &reading),
             None => refused("there is nothing to undo".to_owned(), &reading),
         },
         Err(reason) => refused(reason, &reading),
@@ -114,7 +127,17 @@ pub fn understand(text: &str, context: &Context) -> Reply {
 /// A request that is refused as a whole, with the words of it that nobody knows.
 fn refused(reason: String, reading: &Reading) -> Reply {
     let unknown = reading.phrases.iter().filter(|p| matches!(p.sense, Sense::Unknown | Sense::Deed)).map(|p| p.span.clone());
-    Reply::Refused { reason, not_understood: words(reading, unknown.chain(reading.presumed.iter().cloned())) }
+    with_corrections(Reply::Refused { reason, not_understood: words(reading, unknown.chain(reading.presumed.iter().cloned())) }, reading)
+}
+
+/// A refusal says what was read otherwise than written: that may be all that is wrong.
+fn with_corrections(reply: Reply, reading: &Reading) -> Reply {
+    match reply {
+        Reply::Refused { reason, not_understood } if !reading.corrections.is_empty() => {
+            Reply::Refused { reason: format!("{reason} ({})", reading.corrections.join(", ")), not_understood }
+        }
+        reply => reply,
+    }
 }
 
 /// Reads clause by clause into edits, starting from `start`.
@@ -128,7 +151,7 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
     }
     let mut refusals = Vec::new();
     let mut ignored = Vec::new();
-    let mut understood = false;
+    let (mut understood, mut changed) = (false, false);
     for clause in &mut clauses {
         let before = draft.spec.clone();
         let result = clauses::understand(clause, &mut draft).and_then(|()| match unheeded::refusal(clause, &draft) {
@@ -136,7 +159,10 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
             None => Ok(()),
         });
         match result {
-            Ok(()) => understood |= clause.took_something(),
+            Ok(()) => {
+                understood |= clause.took_something();
+                changed |= draft.spec != before;
+            }
             Err(reason) => {
                 // The clauses after it are read all the same, for what is wrong with them.
                 draft.spec = before;
@@ -158,6 +184,10 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
         return Reply::Refused { reason: reason(&draft, &not_understood), not_understood };
     }
     let edits = context.spec.edits_to(&draft.spec);
+    if changed && edits.is_empty() && !draft.undone {
+        let reason = format!("that cancels out, and nothing would change: {}", draft.gloss.join("; "));
+        return Reply::Refused { reason, not_understood };
+    }
     if let Err(error) = context.spec.apply(&edits) {
         return Reply::Refused { reason: error.to_string(), not_understood };
     }
@@ -175,8 +205,8 @@ fn edits(reading: &Reading, context: &Context, start: Spec) -> Reply {
 
 /// Why nothing was done.
 fn reason(draft: &Draft, not_understood: &[String]) -> String {
-    const CAN: &str = "try \"make it jump\", \"drop it from 1 m\", \"push it to the left at 0.5 s\", \"softer\", \"make it of rubber\", \"do it on the moon\", \
-                       \"for 3 seconds\", \"look from above\", \"undo that\"";
+    const CAN: &str = "try, for instance, \"make it jump\", \"drop it from 1 m\", \"push it to the left at 0.5 s\", \"softer\", \"make it of rubber\", \"do it on \
+                       the moon\", \"for 3 seconds\", \"look from above\", \"undo that\"";
     // "A steel vase", and nothing else: what was said of the steel is the reason.
     if !draft.gloss.is_empty() {
         return draft.gloss.join("; ");

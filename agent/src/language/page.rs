@@ -153,9 +153,18 @@ fn answer(reply: &Reply) -> String {
         Reply::Undo(1) => "back by one turn".to_owned(),
         Reply::Undo(n) => format!("back by {n} turns"),
         Reply::Redo(n) => format!("forward by {n}"),
-        Reply::BackTo(super::VersionRef::First) => "back to the first version".to_owned(),
-        Reply::BackTo(super::VersionRef::Number(n)) => format!("back to v{n}"),
+        Reply::BackTo(version) => format!("back to {}", called(*version)),
+        Reply::Compare(from, to) => format!("says what {} and {} differ in", called(*from), called(*to)),
         Reply::Refused { reason, not_understood } => format!("refused: {reason}{}", unknown(not_understood)),
+    }
+}
+
+fn called(version: super::VersionRef) -> String {
+    match version {
+        super::VersionRef::First => "the first version".to_owned(),
+        super::VersionRef::Number(n) => format!("v{n}"),
+        super::VersionRef::Last => "the newest".to_owned(),
+        super::VersionRef::Previous => "the one before it".to_owned(),
     }
 }
 

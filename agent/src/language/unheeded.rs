@@ -40,7 +40,7 @@ fn meant(clause: &Clause, draft: &Draft, i: usize) -> Option<&'static str> {
                  \"the top melts at 1 s\""
             }
         },
-        Sense::Negation => "\"don't spin\", \"no jump\", \"stop the wind\" and \"undo\" deny something",
+        Sense::Negation => "it goes before a motion, \"don't spin\", \"no jump\", and \"stop the wind\" and \"undo\" take something back",
         Sense::Except => "what is left out is a part, and what is asked for a material from the start: \"everything except the top is steel\"",
         Sense::Limit => limit_hint(&draft.words(phrases[i].span.clone()).to_lowercase()),
         Sense::Ends => "say when: \"stop the wind at 1 s\", \"wind from the left until 1 s\"",
@@ -50,7 +50,7 @@ fn meant(clause: &Clause, draft: &Draft, i: usize) -> Option<&'static str> {
         Sense::Change(_) => "more and less go with what there is: \"less stiff\", \"a weaker wind\", \"half the gravity\"",
         Sense::Replace => "\"replace the water with honey\" says what and by what",
         Sense::Moment(moment) => moment_hint(*moment, clause.verb())?,
-        Sense::Deed => "\"push\", \"drop\", \"throw\", \"spin\", \"pull\", \"hold\", \"stop\", \"melt\" are",
+        Sense::Deed => "known are, for instance, \"jump\", \"push\", \"drop\", \"throw\", \"spin\", \"pull\", \"hold\", \"stop\", \"melt\"",
         _ if beside::waits_for(&phrases[i], draft.tokens()) => "until what? only a time is understood, \"until 1 s\"",
         Sense::Filler if draft.words(phrases[i].span.clone()).eq_ignore_ascii_case("only") => {
             let (at, _) = phrases.iter().enumerate().skip(i + 1).find(|(_, p)| {

@@ -82,6 +82,7 @@ fn property(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result<(), 
     if scale.ratio <= 0.0 || !scale.ratio.is_finite() {
         return Err("nothing would be left of it".to_owned());
     }
+    draft.compare(scale.property, scale.ratio > 1.0, clause)?;
     match scale.property {
         Property::Stiffness => stuff::stiffness(scale, clause, draft),
         Property::Hardness if pace::pushed_last(draft) => {

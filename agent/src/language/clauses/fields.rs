@@ -64,7 +64,7 @@ pub fn understand(field: Field, clause: &mut Clause, draft: &mut Draft) -> Resul
         rate: clause.take_measure(Dimension::AngularSpeed).map(|(w, _)| w),
         acceleration: clause.take_measure(Dimension::Acceleration).map(|(a, _)| a),
         directions: if aimed { clause.take_directions() } else { Vec::new() },
-        strength: strength(Verb::Field(field), clause).0,
+        strength: strength(Verb::Field(field), clause, draft)?.0,
     };
     for &object in &objects {
         one(field, &ask, span, draft, object)?;
@@ -185,7 +185,7 @@ pub fn wind(clause: &mut Clause, draft: &mut Draft, objects: &[usize], at_s: Opt
     let gust = if clause.take_sense(&Sense::Gusty) { GUSTY } else { 0.0 };
     let mut directions = clause.take_directions();
     directions.extend(take_side(clause));
-    let (strength, scale) = strength(Verb::Blow, clause);
+    let (strength, scale) = strength(Verb::Blow, clause, draft)?;
     let strength = light * strength;
     for &object in objects {
         let name = draft.name(object);

@@ -24,8 +24,9 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let to_s = until.map_or(Until::End, |to| Until::Time(say::tidy(to)));
     for (&object, part) in objects.iter().flat_map(|object| named.iter().map(move |part| (object, *part))) {
         let whole = Portion { stem: "hold", region: Region::Above(0.0), said: "all", chosen: None };
-        let Portion { stem, region, said, .. } = part.map_or(whole, |part| parts::portion(draft, object, part));
+        let Portion { stem, region, said, chosen } = part.map_or(whole, |part| parts::portion(draft, object, part));
         let object = draft.name(object);
+        let chosen = chosen.map_or(String::new(), |chosen| format!(" ({chosen})"));
         let same = draft.spec.pins.iter_mut().find(|p| p.object == object && p.region == region);
         match same {
             Some(pin) => (pin.from_s, pin.to_s) = (from_s, to_s),
@@ -35,7 +36,7 @@ pub fn pin(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
             }
         }
         let until = until.map_or("to the end".to_owned(), |to| format!("to {}", say::seconds(to)));
-        draft.gloss.push(format!("{said} of {object} is held from {} {until}", say::seconds(from_s)));
+        draft.gloss.push(format!("{said} of {object}{chosen} is held from {} {until}", say::seconds(from_s)));
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! One clause, understood: which families of verbs and adjectives read it, and in which order.
 
 pub mod adjust;
+pub mod amend;
 pub mod amounts;
 pub mod camera;
 pub mod course;
@@ -61,7 +62,7 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     if let Some(course) = clause.take(|s| if let Sense::Course(course) = s { Some(*course) } else { None }) {
         return course::lead(course, clause, draft);
     }
-    if denied(clause)? {
+    if denied(clause, draft)? {
         return hold::cancel(clause, draft);
     }
     if world::turn_gravity(clause, draft) {
@@ -93,8 +94,12 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
     if !place::take_rise(clause, draft)? {
         adjust::understand(clause, draft)?;
     }
-    world::time(clause, draft)?;
+    if !amend::end(clause, draft)? {
+        world::time(clause, draft)?;
+    }
     let corrects = draft.corrects || clause.has(|s| *s == Sense::Instead);
+    let directed = amend::lacks_motion(clause);
+    let amended = amend::understand(clause, draft)?;
     if corrects
         && clause.has(|s| matches!(s, Sense::View(_)))
         && draft.context.previous_spec.is_some_and(|before| before.forces != draft.context.spec.forces)
@@ -105,8 +110,7 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal>
         camera::understand(clause, draft)?;
     }
     clause.take_sense(&Sense::Instead);
-    let directed = clause.has(|s| matches!(s, Sense::Direction(_))) && !clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(_)));
-    if !turns::amend(clause, draft)? && directed {
+    if !amended && directed {
         return Err("which motion goes that way? \"push it to the left\"".to_owned());
     }
     Ok(())
@@ -209,17 +213,18 @@ fn next_verb(clause: &mut Clause) -> Option<Verb> {
 
 /// Whether the clause denies something: "don't spin", "stop the wind". A denial of anything else is refused, so that
 /// nobody gets the opposite of what was said.
-fn denied(clause: &mut Clause) -> Result<bool, Refusal> {
+fn denied(clause: &mut Clause, draft: &Draft) -> Result<bool, Refusal> {
     if clause.has(|s| *s == Sense::Negation) {
         let first = clause.left().find(|p| p.sense != Sense::Filler).map(|p| p.sense.clone());
         if hold::can_deny(clause) && (first == Some(Sense::Negation) || clause.left().filter(|p| matches!(p.sense, Sense::Verb(_))).count() == 1) {
             clause.take_sense(&Sense::Negation);
             return Ok(true);
         }
-        return Err(
-            "a denial that is not understood: \"don't spin\", \"no jump\", \"stop the wind\", \"undo\" are; what it is of is said without \"not\""
-                .to_owned(),
-        );
+        let word = clause.phrases().iter().find(|p| p.sense == Sense::Negation).map(|p| draft.words(p.span.clone())).unwrap_or_default();
+        return Err(format!(
+            "\"{word}\" is understood before a motion only, as in \"don't spin\" and \"no wind\": say what is wanted instead, \"stiffer\", \"of jelly\", \
+             or \"undo\""
+        ));
     }
     let stops = clause.has(|s| matches!(s, Sense::Verb(Verb::Stop)));
     if stops {

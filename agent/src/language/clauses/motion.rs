@@ -54,8 +54,11 @@ fn lasting(clause: &Clause) -> bool {
 }
 
 /// How strong a verb is to be: adverbs and adjectives together, 1 where there are none.
-pub fn strength(verb: Verb, clause: &mut Clause) -> (f64, Option<Scale>) {
+pub fn strength(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<(f64, Option<Scale>), Refusal> {
     let scale = clause.take_scale(qualifies(verb)).or_else(|| clause.take_more(verb));
+    if let Some(scale) = scale.filter(|s| s.compared) {
+        draft.compare(scale.property, scale.ratio > 1.0, clause)?;
+    }
     let adverbs = clause.take_vigour();
     let hard = match scale {
         // "hard" is an adverb here, not a material; "very hard" is hard twice over.
@@ -63,7 +66,7 @@ pub fn strength(verb: Verb, clause: &mut Clause) -> (f64, Option<Scale>) {
         Some(scale) => scale.ratio,
         None => 1.0,
     };
-    (adverbs * hard, scale)
+    Ok((adverbs * hard, scale))
 }
 
 fn jump(clause: &mut Clause, draft: &mut Draft, objects: &[usize], when: When) -> Result<(), Refusal> {
@@ -76,7 +79,7 @@ fn jump(clause: &mut Clause, draft: &mut Draft, objects: &[usize], when: When) -
     if directions.contains(&Direction::Down) {
         return Err("a jump goes up; \"drop it from 1 m\" goes down".to_owned());
     }
-    let (strength, scale) = strength(Verb::Jump, clause);
+    let (strength, scale) = strength(Verb::Jump, clause, draft)?;
     let gravity = draft.gravity_for_heights_m_s2();
     for &object in objects {
         let rising = draft.spec.objects[object].velocity_m_s[2].max(0.0);
@@ -143,7 +146,7 @@ fn push(strength_of_word: f64, clause: &mut Clause, draft: &mut Draft, objects: 
     let speed = clause.take_measure_or_plain(Dimension::Speed).map(|(v, _)| v);
     let mut directions = clause.take_directions();
     directions.extend(take_side(clause));
-    let (strength, scale) = strength(Verb::Push(0.0), clause);
+    let (strength, scale) = strength(Verb::Push(0.0), clause, draft)?;
     if scale.is_some_and(|s| s.compared) && directions.is_empty() && speed.is_none() && when == When::Start && super::pace::has_speed(draft, objects)
     {
         return super::pace::speed(draft, objects, strength);
@@ -204,7 +207,7 @@ fn throw(clause: &mut Clause, draft: &mut Draft, objects: &[usize], when: When) 
     let speed = clause.take_measure_or_plain(Dimension::Speed).map(|(v, _)| v);
     let elevation = clause.take_measure(Dimension::Angle).map(|(a, _)| a);
     let mut directions = clause.take_directions();
-    let (strength, _) = strength(Verb::Throw, clause);
+    let (strength, _) = strength(Verb::Throw, clause, draft)?;
     let (up, down) = (directions.contains(&Direction::Up), directions.contains(&Direction::Down));
     if up && down {
         return Err("those directions cancel out".to_owned());
@@ -264,6 +267,9 @@ fn spin(verb: Verb, clause: &mut Clause, draft: &mut Draft, objects: &[usize], a
     let rate = clause.take_measure(Dimension::AngularSpeed).map(|(w, _)| w);
     let directions = clause.take_directions();
     let scale = clause.take_scale(qualifies(Verb::Spin));
+    if let Some(scale) = scale.filter(|s| s.compared) {
+        draft.compare(scale.property, scale.ratio > 1.0, clause)?;
+    }
     let strength_of_adverbs = clause.take_vigour();
     for &object in objects {
         let frame = draft.frame(object);
@@ -348,7 +354,7 @@ fn pull(verb: Verb, clause: &mut Clause, draft: &mut Draft, objects: &[usize], a
     if directions.is_empty() && clause.take_sense(&Sense::Ground) {
         directions.push(Direction::Down);
     }
-    let (strength, _) = strength(Verb::Pull, clause);
+    let (strength, _) = strength(Verb::Pull, clause, draft)?;
     let stem = if verb == Verb::Blow { "wind" } else { "pull" };
     for &object in objects {
         let assumed = if directions.is_empty() { " (no direction said)" } else { "" };

@@ -3,9 +3,11 @@
 use super::super::beside::is_of;
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
+use super::super::say;
 use super::super::sense::{Direction, Part, Sense};
 use glam::DVec3;
 use phystalk::spec::{self, BoxShape, Material, PlaneShape, Region};
+use phystalk::world::Mark;
 
 /// An object, or a part of it that words may speak of.
 #[derive(Clone, Debug, PartialEq)]
@@ -176,17 +178,22 @@ pub fn portion(draft: &Draft, object: usize, part: Part) -> Portion {
     let side = |towards: Direction| {
         // Behind a plane is where its normal does not point.
         let normal = (-draft.frame(object).unit(towards)).to_array().map(|x| if x == 0.0 { 0.0 } else { x });
-        Region::HalfSpace(PlaneShape { point_m: super::super::say::tidy3(middle), normal })
+        Region::HalfSpace(PlaneShape { point_m: say::tidy3(middle), normal })
     };
     let waist = || {
         let room = 0.1 * (high - low).max_element();
-        let size_m = [high.x - low.x + room, high.y - low.y + room, (high.z - low.z) / 3.0].map(super::super::say::tidy);
-        Region::Box(BoxShape { centre_m: super::super::say::tidy3(middle), size_m })
+        let size_m = [high.x - low.x + room, high.y - low.y + room, (high.z - low.z) / 3.0].map(say::tidy);
+        Region::Box(BoxShape { centre_m: say::tidy3(middle), size_m })
     };
     let seam = draft.seam(object);
-    let chosen = |side: &str, instead: &str| {
-        let height = super::super::say::short(100.0 * seam);
-        Some(format!("what is {side} {height} % of its height, where its colours change most; \"the {instead} third\" says otherwise"))
+    let chosen = |side: &str, named: &str, instead: &str| {
+        let (share, height) = (say::short(100.0 * seam.share), say::metres(seam.share * (high.z - low.z)));
+        let why = match seam.by {
+            Mark::Neck => "at its neck",
+            Mark::Colours => "where its colours change most",
+            Mark::Nothing => "the middle, for neither its shape nor its colours tell them apart",
+        };
+        Some(format!("what is {side} {share} % of its height, {height}, {why}; \"{named} the {instead} third\" says otherwise"))
     };
     let (stem, region, said, chosen) = match part {
         Part::Base => ("base", Region::Below(0.05), "the lowest twentieth", None),
@@ -200,8 +207,8 @@ pub fn portion(draft: &Draft, object: usize, part: Part) -> Portion {
         Part::RightHalf => ("right-half", side(Direction::Right), "the right half", None),
         Part::FrontHalf => ("front-half", side(Direction::Forward), "the front half", None),
         Part::BackHalf => ("back-half", side(Direction::Backward), "the back half", None),
-        Part::Flowers => ("flowers", Region::Above(seam), "flowers", chosen("above", "flowers are the upper")),
-        Part::Pot => ("pot", Region::Below(seam), "pot", chosen("below", "pot is the lower")),
+        Part::Flowers => ("flowers", Region::Above(seam.share), "flowers", chosen("above", "the flowers are", "upper")),
+        Part::Pot => ("pot", Region::Below(seam.share), "pot", chosen("below", "the pot is", "lower")),
         Part::Rest | Part::Ends => ("rest", Region::Above(0.0), "all", None),
     };
     Portion { stem, region, said, chosen }

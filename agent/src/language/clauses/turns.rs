@@ -1,12 +1,11 @@
-//! What speaks of the newest turn: "no, the other way", "again", "more", "a bit less", "to the right, rather".
+//! What speaks of the newest turn as a whole: "no, the other way", "again", "more", "a bit less".
 
 use super::super::clause::Clause;
 use super::super::draft::{Draft, Refusal};
-use super::super::numbers::Dimension;
 use super::super::say;
-use super::super::sense::{Sense, TurnWord};
+use super::super::sense::{Field, Sense, TurnWord, Verb};
 use glam::DVec3;
-use phystalk::spec::{Auto, Event, Force, Object, Spec};
+use phystalk::spec::{Acceleration, Auto, Event, Force, Object, Spec};
 
 const NOTHING: &str = "there is no turn before this one that it could speak of";
 
@@ -22,6 +21,11 @@ enum Follow {
 /// Reads a word about the newest turn; whether there was one.
 pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
     if clause.take_sense(&Sense::Turn(TurnWord::OtherWay)) {
+        // "Reverse the wind": the one that blows, whichever turn made it.
+        let lasting = |v: Verb| matches!(v, Verb::Blow | Verb::Pull | Verb::Spin | Verb::Roll | Verb::Field(_));
+        if let Some(verb) = clause.take_verb(lasting) {
+            return reverse(verb, clause, draft).map(|()| true);
+        }
         // "push it the other way": the verb repeats what is turned round.
         clause.take_all(|s| matches!(s, Sense::Verb(_) | Sense::Negation).then_some(()));
         return follow(draft, Follow::Opposite).map(|()| true);
@@ -48,6 +52,41 @@ pub fn understand(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusa
     });
     let share = degrees.iter().product::<f64>() * if change > 0.0 { 1.0 } else { -0.5 };
     follow(draft, Follow::On(share)).map(|()| true)
+}
+
+/// Turns round what there is of a wind, a pull, a field or a spin.
+fn reverse(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
+    clause.take_sense(&Sense::Negation);
+    for object in draft.subjects(clause)? {
+        let name = draft.name(object);
+        let spin = draft.spec.objects[object].spin_rad_s;
+        if matches!(verb, Verb::Spin | Verb::Roll) && spin != [0.0; 3] {
+            draft.object(object).spin_rad_s = say::tidy3(-DVec3::from(spin));
+            draft.gloss.push(format!("{name} spins the other way"));
+            continue;
+        }
+        let stem = match verb {
+            Verb::Blow => "wind",
+            Verb::Pull => "pull",
+            Verb::Field(Field::Motor) | Verb::Spin => "motor",
+            Verb::Field(Field::Swirl) => "swirl",
+            _ => return Err("that has no other way; \"reverse the wind\" and \"spin it the other way\" have".to_owned()),
+        };
+        let mut turned = Vec::new();
+        for force in draft.spec.forces.iter_mut().filter(|f| f.object == name && f.name.starts_with(stem)) {
+            match (force.constant_m_s2(), &mut force.wind) {
+                (Some(a), _) => force.acceleration_m_s2 = Some(Acceleration::Constant(say::tidy3(-DVec3::from(a)))),
+                (None, Some(wind)) => wind.velocity_m_s = say::tidy3(-DVec3::from(wind.velocity_m_s)),
+                (None, None) => force.scale(-1.0),
+            }
+            turned.push(force.name.clone());
+        }
+        if turned.is_empty() {
+            return Err(format!("there is no {stem} on {name} that could go the other way"));
+        }
+        draft.gloss.push(format!("{} of {name}: the other way", say::list(&turned)));
+    }
+    Ok(())
 }
 
 /// Continues, value by value, what led from the spec before the newest turn to the present one.
@@ -108,7 +147,7 @@ fn follow(draft: &mut Draft, how: Follow) -> Result<(), Refusal> {
 
 /// An event of the newest turn in the spec that is being made. Where that turn was taken back it comes again; where
 /// this request removed it it is gone.
-fn event_again<'a>(draft: &'a mut Draft, event: &Event) -> Option<&'a mut Event> {
+pub fn event_again<'a>(draft: &'a mut Draft, event: &Event) -> Option<&'a mut Event> {
     if draft.undone && !draft.spec.events.iter().any(|e| e.name == event.name) {
         draft.spec.events.push(event.clone());
     }
@@ -116,7 +155,7 @@ fn event_again<'a>(draft: &'a mut Draft, event: &Event) -> Option<&'a mut Event>
 }
 
 /// The same of a force.
-fn force_again<'a>(draft: &'a mut Draft, force: &Force) -> Option<&'a mut Force> {
+pub fn force_again<'a>(draft: &'a mut Draft, force: &Force) -> Option<&'a mut Force> {
     if draft.undone && !draft.spec.forces.iter().any(|f| f.name == force.name) {
         draft.spec.forces.push(force.clone());
     }
@@ -182,58 +221,4 @@ fn scalar((was, is): (f64, f64), how: Follow, target: &mut f64, say: impl Fn(f64
         Follow::On(share) => is * (is / was).powf(share),
     });
     said.push(say(*target));
-}
-
-/// A direction, a time or a speed alone, right after a push: "no, to the right", "at 1 s instead", "at 3 m/s". The newest
-/// push or velocity gets it and keeps the rest. Whether the clause was that.
-pub fn amend(clause: &mut Clause, draft: &mut Draft) -> Result<bool, Refusal> {
-    let Some(before) = draft.context.previous_spec else { return Ok(false) };
-    let speaks = |s: &Sense| match s {
-        Sense::Direction(_) | Sense::At(_) => true,
-        Sense::Measure(quantity, _) => quantity.dimension == Dimension::Speed,
-        _ => false,
-    };
-    if clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(_))) || !clause.has(speaks) {
-        return Ok(false);
-    }
-    let now = draft.context.spec;
-    for (index, thing) in now.objects.iter().enumerate() {
-        let frame = draft.frame(index);
-        let newer = |e: &Event| e.object == thing.name && before.events.iter().find(|b| b.name == e.name) != Some(e);
-        let event = now.events.iter().find(|e| newer(e) && e.push_m_s.is_some());
-        let was = before.objects.iter().find(|o| o.name == thing.name).map_or(DVec3::ZERO, |o| DVec3::from_array(o.velocity_m_s));
-        let velocity = DVec3::from_array(thing.velocity_m_s);
-        let changed = (velocity - was).try_normalize().unwrap_or(DVec3::ZERO);
-        let old = match event {
-            Some(event) => DVec3::from_array(event.push_m_s.unwrap_or_default()),
-            None => velocity.dot(changed) * changed,
-        };
-        if old == DVec3::ZERO || event.is_some_and(|e| !draft.undone && !draft.spec.events.iter().any(|d| d.name == e.name)) {
-            continue;
-        }
-        let directions = clause.take_directions();
-        let heading = if directions.is_empty() { None } else { Some(frame.heading(&directions).ok_or("those directions cancel out")?) };
-        let speed = clause.take_measure(Dimension::Speed).map_or(old.length(), |(v, _)| v);
-        let new = heading.as_ref().map_or(old.normalize(), |h| h.unit) * speed;
-        let way = heading.map_or(String::new(), |h| format!(" {}", h.said));
-        let line = match event {
-            Some(event) => {
-                let Some(event) = event_again(draft, event) else { continue };
-                event.push_m_s = Some(say::tidy3(new));
-                if let Some(at_s) = clause.take_at() {
-                    (event.at_s, event.when) = (Some(say::tidy(at_s)), None);
-                }
-                let at = event.at_s.map_or(String::new(), |at_s| format!(" at {}", say::seconds(at_s)));
-                format!("{} of {} goes{way}{at}: {} more", event.name, thing.name, say::speed(speed))
-            }
-            None => {
-                draft.object(index).velocity_m_s = say::tidy3(velocity - old + new);
-                format!("{} goes{way}: {} at the start", thing.name, say::speed(speed))
-            }
-        };
-        clause.take_sense(&Sense::Instead);
-        draft.gloss.push(line);
-        return Ok(true);
-    }
-    Ok(false)
 }

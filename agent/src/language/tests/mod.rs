@@ -5,7 +5,7 @@ mod table;
 
 use super::*;
 use phystalk::spec::{Axis, BoxShape, Camera, Collider, ColliderShape, Object};
-use phystalk::world::ObjectFacts;
+use phystalk::world::{Mark, ObjectFacts, Seam};
 
 /// A scene to speak about: its spec, its facts, and what was resolved.
 pub struct Stage {
@@ -38,7 +38,13 @@ impl Stage {
             }
         });
         let camera = Camera { eye_m: [-3.48, -1.96, 1.2], target_m: [0.0, 0.0, 0.5], fov_deg: 45.0, orbit_deg_s: 0.0 };
-        let facts = Facts { objects: objects.collect(), seams: vec![0.42; names.len()], ground_m: 0.0, camera, has_static: false };
+        let facts = Facts {
+            objects: objects.collect(),
+            seams: vec![Seam { share: 0.42, by: Mark::Neck }; names.len()],
+            ground_m: 0.0,
+            camera,
+            has_static: false,
+        };
         let mut resolved = serde_json::Map::new();
         for name in names {
             resolved.insert(format!("object.{name}.material.young_pa"), 200_000.0.into());
@@ -84,6 +90,7 @@ pub fn line(reply: &Reply) -> String {
         Reply::Undo(n) => format!("undo {n}"),
         Reply::Redo(n) => format!("redo {n}"),
         Reply::BackTo(version) => format!("back to {version:?}"),
+        Reply::Compare(from, to) => format!("compare {from:?} {to:?}"),
         Reply::Refused { not_understood, .. } => format!("refused{}", words(not_understood)),
     }
 }

@@ -136,6 +136,24 @@ fn several_objects_are_told_apart() {
 }
 
 #[test]
+fn a_denial_repeats_the_verb_before_it() {
+    let stage = Stage::of(&["vase", "car"]);
+    let jumps = line(&stage.ask("make the car jump 30 cm"));
+    for text in ["the car jumps 30 cm and the vase does not", "make the car jump 30 cm but not the vase", "the car jumps 30 cm, the vase doesn't"] {
+        assert_eq!(line(&stage.ask(text)), jumps, "{text}");
+    }
+    // Of each thing something else is no contradiction.
+    assert!(matches!(stage.ask("make the car softer and the vase stiffer"), Reply::Edits { .. }));
+}
+
+#[test]
+fn a_part_says_where_it_was_cut_and_why() {
+    let said = gloss(&Stage::vase().ask("the pot is steel"));
+    assert!(said.contains("what is below 42 % of its height, 0.42 m, at its neck") && said.contains("\"the pot is the lower third\""), "{said}");
+    assert!(gloss(&Stage::vase().ask("hold the flowers")).contains("above 42 % of its height"));
+}
+
+#[test]
 fn the_front_of_an_object_gives_its_directions() {
     let mut stage = Stage::vase();
     stage.spec.objects[0].forward = Axis::PlusY;
