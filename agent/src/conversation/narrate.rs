@@ -182,6 +182,30 @@ mod tests {
         assert_eq!(up_and_down(0.001, 0.001, 1.0), None);
     }
 
+    #[test]
+    fn what_still_moves_is_said_where_it_is_a_surprise_with_the_words_that_show_more() {
+        let mut spec = Spec::of_scene("vase.splat");
+        let metrics = Metrics { fps: 50, duration_s: 2.0, ..Metrics::default() };
+        let moving = |last: f64| ObjectMetrics {
+            com_m: vec![[0.0, 0.0, 0.5], [0.0, 0.0, 0.8], [0.0, 0.0, 0.5]],
+            low_m: vec![0.0; 3],
+            high_m: vec![1.0; 3],
+            speed_m_s: vec![2.0; 3],
+            mean_speed_m_s: vec![2.0, 1.0, last],
+            stretch_max: vec![1.0; 3],
+            ..ObjectMetrics::default()
+        };
+        let said = |spec: &Spec, last: f64| sentence("vase", &moving(last), &metrics, spec);
+        assert!(said(&spec, 0.5).ends_with("still moves at 50 cm a second when the run ends: \"for 4 s\" shows more"), "{}", said(&spec, 0.5));
+        // What trembles after a jump does not.
+        assert_eq!(said(&spec, 0.05), "vase: rises 30 cm and comes down again");
+        // Nor what was asked to go on.
+        spec.forces.push(phystalk::spec::Force::constant("wind1", "vase", 0.0, Until::End, [1.0, 0.0, 0.0]));
+        assert_eq!(said(&spec, 0.5), "vase: rises 30 cm and comes down again");
+        assert_eq!(longer(2.0, 2.9), None);
+        assert_eq!(longer(2.0, 4.3).as_deref(), Some("the run lasts 4.3 s instead of 2 s, to follow what moves: \"for 2 s\" keeps it short"));
+    }
+
     fn stage(stage: StageName, action: Action, from_s: Option<f64>, reason: &str) -> PlannedStage {
         PlannedStage { stage, key: String::new(), action, from_s, reason: reason.to_owned(), seconds: None }
     }

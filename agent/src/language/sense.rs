@@ -140,7 +140,7 @@ pub enum Part {
     FrontHalf,
     /// Its back half.
     BackHalf,
-    /// What is above the height at which its colours change most.
+    /// What is above its neck, or the height at which its colours change most.
     Flowers,
     /// What is below it.
     Pot,
