@@ -15,7 +15,8 @@
 @group(0) @binding(11) var<storage, read> objects: array<vec4<f32>>;
 @group(0) @binding(12) var<storage, read> colliders: array<Collider>;
 @group(0) @binding(13) var<storage, read_write> kinematics: array<vec4<f32>>;
-@group(0) @binding(14) var<storage, read_write> kept: array<f32>;
+// Pressure, how much too dense it may be, and how fast that changes, in the original order.
+@group(0) @binding(14) var<storage, read_write> kept: array<vec4<f32>>;
 @group(0) @binding(15) var<storage, read_write> control: Control;
 var<immediate> substep: Substep;
 
@@ -55,6 +56,15 @@ fn kept_out(from_x: vec3<f32>, x: vec3<f32>, v: vec3<f32>, rest_m: f32) -> array
     return array<vec3<f32>, 2>(outside, u);
 }
 
+// How much too dense it may be after the substep, and how fast that changes: it goes as what a critically damped spring
+// pulls, which starts without a jerk. By backward Euler.
+fn eased(much: f32, rate: f32) -> vec2<f32> {
+    let omega = sqrt(EASE_OUT_M_S2 * params.per_m);
+    let step = omega * substep.dt_s;
+    let next = (rate - omega * step * much) / ((1.0 + step) * (1.0 + step));
+    return vec2<f32>(max(much + substep.dt_s * next, 0.0), next);
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocation_id) lane: u32) {
     let n = params.count;
@@ -75,7 +85,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
             v = moved[1];
             kinematics[i] = vec4<f32>(moved[0], position.w);
             kinematics[n + i] = vec4<f32>(v, kinematics[n + i].w);
-            kept[bitcast<u32>(tag.x)] = pressure[i];
+            let index = bitcast<u32>(tag.x);
+            kept[index] = vec4<f32>(pressure[i], eased(nature[i].w, kept[index].z), 0.0);
             speed = length(v);
         } else {
             v -= substep.dt_s * (params.gravity_m_s2 + objects[bitcast<u32>(tag.y) & 0xffffu].xyz);

@@ -15,8 +15,8 @@
 @group(0) @binding(7) var<storage, read_write> neighbours: array<vec4<u32>>;
 @group(0) @binding(8) var<storage, read_write> slopes: array<vec4<f32>>;
 @group(0) @binding(9) var<storage, read_write> near: array<u32>;
-// Two planes: gradient of the density, times the cell, walls twice, and density over that at rest; then the
-// direction of walls, and by how much a push along them is to grow for what they hide of it.
+// Two planes: gradient of the density, times the cell, walls twice, and density over that at rest, less what it may be
+// too dense; then the direction of walls, and by how much a push along them is to grow for what they hide of it.
 @group(0) @binding(10) var<storage, read_write> density: array<vec4<f32>>;
 // 1 over the change of density that a pressure makes. Where particles crowd, neighbours answer along with
 // each other: as many times more as it is dense.
@@ -217,7 +217,7 @@ fn look_around(i: u32) -> f32 {
         inward[i] = length(0.5 * (of_liquid + sums.gradient) + solid.gradient);
     }
     near[i] = pack_near(Near(listed.liquids, listed.solids, liquid));
-    density[i] = sum;
+    density[i] = sum - vec4<f32>(vec3<f32>(0.0), max(own.w, 0.0));
     density[n + i] = wall;
     let change = dot(sum.xyz, along_walls(sum.xyz, wall)) * own.x + mine.w * sums.answer;
     answer[i] = 1.0 / max(change * max(sum.w, 1.0), 1e-3 * own.x);

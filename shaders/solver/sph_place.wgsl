@@ -5,13 +5,13 @@
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> matter: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> substances: array<Substance>;
-// Pressures, in the original order.
-@group(0) @binding(4) var<storage, read> kept: array<f32>;
+// Pressure, and how much too dense it may be, in the original order.
+@group(0) @binding(4) var<storage, read> kept: array<vec4<f32>>;
 // Position, and volume in cells; that of a solid with a minus.
 @group(0) @binding(5) var<storage, read_write> place: array<vec4<f32>>;
 // Velocity, viscosity.
 @group(0) @binding(6) var<storage, read_write> motion: array<vec4<f32>>;
-// 1 / density, surface tension, viscosity.
+// 1 / density, surface tension, viscosity, how much too dense it may be.
 @group(0) @binding(7) var<storage, read_write> nature: array<vec4<f32>>;
 @group(0) @binding(8) var<storage, read_write> pressure: array<f32>;
 @group(0) @binding(9) var<storage, read_write> errors: array<u32>;
@@ -54,6 +54,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     place[i] = vec4<f32>(position.xyz, select(-cells, cells, liquid));
     coarse[i] = coarsely(position.xyz, liquid);
     motion[i] = vec4<f32>(kinematics[n + i].xyz, viscosity);
-    nature[i] = vec4<f32>(volume / position.w, select(0.0, substance.values[1], liquid), viscosity, 0.0);
-    pressure[i] = select(0.0, kept[bitcast<u32>(tag.x)], liquid);
+    let own = select(vec4<f32>(0.0), kept[bitcast<u32>(tag.x)], liquid);
+    nature[i] = vec4<f32>(volume / position.w, select(0.0, substance.values[1], liquid), viscosity, own.y);
+    pressure[i] = own.x;
 }

@@ -76,7 +76,7 @@ impl Solver {
         let mut states = self.states()?;
         let mut unstressed: Vec<Rows> = self.gpu.read(&self.unstressed, states.len())?;
         let mut shown = self.shown()?;
-        let mut bodies_change = false;
+        let (mut bodies_change, mut poured) = (false, Vec::new());
         for (i, state) in states.iter_mut().enumerate().filter(|(i, s)| picked[*i] && s.object() == object) {
             let softer = state.lambda_pa + 2.0 * state.mu_pa;
             (state.mu_pa, state.lambda_pa) = moduli.of(state.mu_pa, state.lambda_pa);
@@ -97,6 +97,9 @@ impl Solver {
                 let before = &self.laws.substances[state.substance()];
                 let after = &self.laws.substances[usize::from(row)];
                 turn(state, before, after, shape, &mut unstressed[i], shown.get_mut(i));
+                if after.is_sph() && !before.is_sph() {
+                    poured.push(i);
+                }
                 bodies_change |= (state.is_rigid() || after.rigid().is_some()) && state.substance() != usize::from(row);
                 state.set_substance(row, after.rigid().is_some());
                 if after.is_sph() || after.rigid().is_some() {
@@ -115,6 +118,7 @@ impl Solver {
         }
         self.gpu.upload(&self.unstressed, &unstressed);
         self.set_shown(&shown);
+        self.pour(&poured)?;
         self.set_layers(&states)?;
         self.replace(states);
         Ok(())

@@ -115,6 +115,9 @@ pub const VISCOUS_BOUND: f32 = 24.0;
 pub const EDDIES_MOST: f32 = 1.0 / (VISCOUS_BOUND * VISCOUS);
 /// An excess of density is made good no faster than this, 1/s: what overlaps parts without flying off.
 pub const THIN_OUT: f32 = 25.0;
+/// What is too dense from the start thins out as if springs of this over a cell pulled its excess down: little beside weight,
+/// and without a jerk.
+pub const EASE_OUT_M_S2: f32 = 4.0;
 /// Gradient of density, times the cell, from which on a particle counts to a liquid's surface.
 pub const SURFACE_FROM: f32 = 0.25;
 /// And at which it does wholly.
@@ -349,6 +352,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("WALL_VISCOUS", Constant::F32(WALL_VISCOUS)),
         ("VISCOUS_RANGE", Constant::F32(VISCOUS_RANGE)),
         ("THIN_OUT", Constant::F32(THIN_OUT)),
+        ("EASE_OUT_M_S2", Constant::F32(EASE_OUT_M_S2)),
         ("SURFACE_FROM", Constant::F32(SURFACE_FROM)),
         ("SURFACE_TO", Constant::F32(SURFACE_TO)),
         ("TENSION", Constant::F32(TENSION)),

@@ -83,7 +83,7 @@ impl Solver {
             recording.dispatch_with(&passes.stress, &b.stress, &Substep { dt_next_s: substep.dt_s, ..*substep }, groups);
         }
         if let (Some(sph), Some(bound)) = (self.sph(), &b.sph) {
-            sph.record(bound, substep, plan.viscous_rounds, groups, recording);
+            sph.record(bound, substep, plan, step == 0, groups, recording);
         }
         if self.has_solids() {
             if substep.lag == 0 {

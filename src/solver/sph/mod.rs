@@ -6,6 +6,8 @@
 //! of their own, and what the liquid does to them goes into their velocity before the grid sees them.
 //! A wall is felt as if the liquid went on behind it in layers, in closed form.
 //!
+//! As captured, so at rest: what is too dense when it becomes such a liquid may be so, and thins out slowly.
+//!
 //! A substep: lists of neighbours; weight, tension, viscosity; velocities that keep the density; motion. The
 //! correction is relaxed Jacobi rounds over pressures that are never negative, from those of the last substep on.
 //! How many are made is decided on the device, by sums of integers: each round lets the next one run, and one
@@ -15,7 +17,7 @@
 
 mod passes;
 
-use super::advance::Substep;
+use super::advance::{Plan, Substep};
 use super::constants::{SPH_LEAST_ROUNDS, VISCOUS, VISCOUS_BOUND, VISCOUS_RANGE, WORKGROUP};
 use super::core::Solver;
 use super::grid::GridBuffers;
@@ -41,6 +43,8 @@ const FALL_SHARE: f64 = 0.15;
 /// Share of the period of the shortest capillary wave, times 1 / sqrt(2 pi): half of what a continuous surface
 /// takes (Brackbill et al. 1992), for pairs of particles are stiffer.
 const CAPILLARY: f64 = 0.2;
+/// What is kept of a particle that is new to this: no pressure, and how much too dense it may be it has not noted yet.
+const UNNOTED: [f32; 4] = [0.0, -1.0, 0.0, 0.0];
 /// What is left of the stiffest viscous error after the implicit rounds.
 const VISCOUS_LEFT: f64 = 1e-2;
 
@@ -54,7 +58,7 @@ pub(super) struct Solve {
 }
 
 /// The smoothed particles' part of a solver. Buffers are in the order of the sort and live within a
-/// substep; only pressures, and what viscosity did, are kept from one to the next.
+/// substep; only pressures, what may be too dense, and what viscosity did are kept from one to the next.
 #[derive(Debug)]
 pub(super) struct Sph {
     pub passes: SphPasses,
@@ -84,7 +88,7 @@ pub(super) struct Sph {
     pub pressure: wgpu::Buffer,
     pub reached: wgpu::Buffer,
     pub errors: wgpu::Buffer,
-    /// Pressures by the particles' original order.
+    /// Pressure, how much too dense it may be, and how fast that changes, by the particles' original order.
     kept: wgpu::Buffer,
     /// What implicit viscosity accelerated each by in the last substep, in that order.
     braking: wgpu::Buffer,
@@ -94,6 +98,7 @@ pub(super) struct Sph {
 pub(super) struct SphBound {
     pub place: wgpu::BindGroup,
     pub near: wgpu::BindGroup,
+    pub begin: wgpu::BindGroup,
     pub skin: wgpu::BindGroup,
     pub forces: wgpu::BindGroup,
     pub foresee: wgpu::BindGroup,
@@ -111,7 +116,7 @@ impl Sph {
     /// pressures last.
     pub fn new(gpu: &Gpu, n: usize) -> Result<(Sph, [Kept; 2]), SolverError> {
         let vectors = |name: &str| gpu.storage::<[f32; 4]>(&format!("solver.sph_{name}"), n);
-        let kept = Kept::new(gpu, "solver.sph_kept", &vec![0f32; n])?;
+        let kept = Kept::new(gpu, "solver.sph_kept", &vec![UNNOTED; n])?;
         let braking = Kept::new(gpu, "solver.sph_braking", &vec![[0f32; 4]; n])?;
         let turns = |name: &str| gpu.storage::<[u32; 4]>(name, super::constants::SPH_SLOTS as usize);
         let sph = Sph {
@@ -216,6 +221,7 @@ impl Sph {
         SphBound {
             place: gpu.bind(&p.sph_place, &[&places[..], &placed].concat()),
             near: gpu.bind(&p.sph_near, &[&cells[..], &lists, &found].concat()),
+            begin: gpu.bind(&p.sph_begin, &[params, &self.nature, &self.density]),
             skin: gpu.bind(&p.sph_skin, &[&[params, &self.solve], &tight[..]].concat()),
             forces: gpu.bind(&p.sph_forces, &[&around[..], &lists, &forced].concat()),
             foresee: gpu.bind(&p.sph_foresee, &[params, matter, &self.braking, &self.corrected, &self.slowed]),
@@ -227,21 +233,24 @@ impl Sph {
         }
     }
 
-    /// Adds one substep, from sorted particles to moved ones.
-    pub fn record(&self, b: &SphBound, substep: &Substep, viscous_rounds: u32, groups: [u32; 3], recording: &mut Recording) {
+    /// Adds one substep, from sorted particles to moved ones; in the `first` of a segment some may be new to this.
+    pub fn record(&self, b: &SphBound, substep: &Substep, plan: &Plan, first: bool, groups: [u32; 3], recording: &mut Recording) {
         let p = &self.passes;
         let job = |job: u32| Substep { job, ..*substep };
         recording.dispatch(&p.sph_place, &b.place, groups);
         recording.dispatch(&p.sph_near, &b.near, groups);
+        if first {
+            recording.dispatch(&p.sph_begin, &b.begin, groups);
+        }
         // Without tension its buffer stays zero.
         if self.tension_over_density > 0.0 {
             recording.dispatch(&p.sph_skin, &b.skin, groups);
         }
-        let implicit = viscous_rounds > 0;
+        let implicit = plan.viscous_rounds > 0;
         recording.dispatch_with(&p.sph_forces, &b.forces, &job(u32::from(implicit)), groups);
         if implicit {
             recording.dispatch_with(&p.sph_foresee, &b.foresee, substep, groups);
-            for round in 0..viscous_rounds {
+            for round in 0..plan.viscous_rounds {
                 recording.dispatch_with(&p.sph_implicit, &b.implicit[(round % 2) as usize], &job(round), groups);
             }
             recording.dispatch_with(&p.sph_settle, &b.settle, substep, groups);
@@ -293,7 +302,16 @@ impl Solver {
     pub(super) fn liquid_pressures_pa(&self) -> Result<Vec<f32>, SolverError> {
         let count = self.params.count as usize;
         let Some(sph) = &self.sph else { return Ok(vec![0.0; count]) };
-        Ok(self.gpu.read(&sph.kept, count)?)
+        Ok(self.gpu.read::<[f32; 4]>(&sph.kept, count)?.into_iter().map(|[pressure_pa, ..]| pressure_pa).collect())
+    }
+
+    /// Particles, by their index, that have just become such a liquid: without pressure, and as dense as they are.
+    pub(super) fn pour(&self, new: &[usize]) -> Result<(), SolverError> {
+        let Some(sph) = self.sph.as_ref().filter(|_| !new.is_empty()) else { return Ok(()) };
+        let mut kept: Vec<[f32; 4]> = self.gpu.read(&sph.kept, self.params.count as usize)?;
+        new.iter().for_each(|&i| kept[i] = UNNOTED);
+        self.gpu.upload(&sph.kept, &kept);
+        Ok(())
     }
 
     /// Whether any particle exchanges with the grid.

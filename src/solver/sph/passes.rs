@@ -7,6 +7,7 @@ passes! {
     SphPasses;
     sph_place: ["substance", "particle", "sph_place"] [Read, Read, Read, Read, Read, Write, Write, Write, Write, Write, Write, Write, Write] 0;
     sph_near: ["control", "cell", "contact", "sph", "sph_viscous", "sph_solve", "sph_near"] [Read, Read, Read, Read, Read, Read, Read, Write, Write, Write, Write, Write, Write, Write, Write, Read] 0;
+    sph_begin: ["sph_begin"] [Read, Write, Write] 0;
     sph_skin: ["sph", "sph_tension", "sph_solve", "sph_list", "sph_skin"] [Read, Read, Read, Read, Read, Read, Read, Write] 0;
     sph_press: ["substep", "sph", "sph_solve", "sph_list", "sph_push", "sph_press"] [Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Write, Write] SUBSTEP;
     sph_correct: ["substep", "sph", "sph_solve", "sph_list", "sph_correct"] [Read, Read, Read, Read, Read, Read, Read, Read, Read, Write, Write, Write] SUBSTEP;

@@ -86,12 +86,26 @@ pub struct Particle {
     pub hidden: f64,
     pub answer: f64,
     pub viscous: f64,
+    /// How much too dense it may be, once it noted that.
+    pub allowed: Option<f64>,
 }
 
-/// `sph_place.wgsl` and `sph_near.wgsl`.
-pub fn near(states: &[ParticleState], around: &Surroundings) -> Vec<Particle> {
+impl Particle {
+    /// `sph_begin.wgsl`: notes how much too dense it may be.
+    pub fn begin(&mut self) {
+        self.allowed.get_or_insert((self.density - 1.0).max(0.0));
+    }
+
+    /// Its density as the correction sees it.
+    pub fn seen(&self) -> f64 {
+        self.density - self.allowed.unwrap_or(0.0)
+    }
+}
+
+/// `sph_place.wgsl` and `sph_near.wgsl`, of particles that may be so much too dense.
+pub fn near(states: &[ParticleState], allowed: &[Option<f64>], around: &Surroundings) -> Vec<Particle> {
     let cell = f64::from(around.params.cell_m);
-    let place = |s: &ParticleState| {
+    let place = |(s, &allowed): (&ParticleState, &Option<f64>)| {
         let (liquid, viscosity, tension) = match around.substances[s.substance()] {
             Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m } => (true, f64::from(viscosity_pa_s), f64::from(surface_tension_n_m)),
             _ => (false, 0.0, 0.0),
@@ -115,9 +129,10 @@ pub fn near(states: &[ParticleState], around: &Surroundings) -> Vec<Particle> {
             hidden: 0.0,
             answer: 0.0,
             viscous: 0.0,
+            allowed: if liquid { allowed } else { Some(0.0) },
         }
     };
-    let mut all: Vec<Particle> = states.iter().map(place).collect();
+    let mut all: Vec<Particle> = states.iter().zip(allowed).map(place).collect();
     for i in 0..all.len() {
         let mut me = all[i].clone();
         me.density = if me.liquid { me.volume * weight(0.0) } else { 0.0 };
@@ -209,9 +224,17 @@ pub fn error(all: &[Particle], i: usize, corrected: &[DVec3], cell: f64, dt_s: f
         let y = (me.x - all[j].x) / cell;
         rate -= all[j].volume * felt(me, &all[j], y.length()).1 * corrected[j].dot(y.normalize());
     }
-    let excess = me.density - 1.0;
+    let excess = me.seen() - 1.0;
     let drift = if excess < 0.0 { excess } else { (f64::from(DRIFT_SHARE) * excess).min(f64::from(THIN_OUT) * dt_s) };
     drift + rate / cell * dt_s
+}
+
+/// How much too dense a particle may be after a substep, and how fast that changes (`sph_advance.wgsl`).
+pub fn eased(much: f64, rate: f64, cell: f64, dt_s: f64) -> [f64; 2] {
+    let stiffness = f64::from(EASE_OUT_M_S2) / cell;
+    // x' = x + dt v', v' = v - dt (k x' + 2 sqrt(k) v').
+    let next = (rate - dt_s * stiffness * much) / (1.0 + 2.0 * stiffness.sqrt() * dt_s + stiffness * dt_s * dt_s);
+    [(much + dt_s * next).max(0.0), next]
 }
 
 /// How far a particle belongs to the surface.
@@ -240,7 +263,7 @@ pub fn skin(all: &[Particle], cell: f64) -> Vec<[f64; 2]> {
 
 /// What the friction of walls leaves of a velocity.
 pub fn braked(me: &Particle, v: DVec3, around: &Surroundings, dt_s: f64) -> DVec3 {
-    let full = (me.density - me.hidden / (1.0 + me.hidden)).clamp(0.3, 1.0);
+    let full = (me.seen() - me.hidden / (1.0 + me.hidden)).clamp(0.3, 1.0);
     let brake = |u: DVec3, (s, normal, holds): (f64, DVec3, bool)| {
         let across = normal * u.dot(normal);
         let rate = f64::from(WALL_FRICTION) * (u - across).length() * 2.0 * (1.0 - s.max(0.0)) / f64::from(around.params.cell_m) / full;
