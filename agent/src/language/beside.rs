@@ -251,9 +251,15 @@ fn hear_shares(stretch: &mut [Phrase], tokens: &[Token]) {
     }
 }
 
-/// "The wind picks up at 0.5 s" begins then; nothing is lifted.
+/// "The wind picks up at 0.5 s" begins then, and nothing is lifted; "a gust hits it" is what gusts do.
 fn hear_onset(stretch: &mut [Phrase], tokens: &[Token]) {
     for i in 1..stretch.len() {
+        let blown = stretch[..i].iter().any(|p| p.sense == Sense::Verb(Verb::Blow));
+        let moved = stretch.get(i + 1).is_some_and(|p| matches!(p.sense, Sense::It | Sense::Article | Sense::Objects(_) | Sense::All));
+        if blown && moved && matches!(stretch[i].sense, Sense::Verb(Verb::Push(_))) {
+            stretch[i].sense = Sense::Filler;
+            continue;
+        }
         let picks = matches!(tokens[stretch[i].span.start].word.as_str(), "pick" | "picks") && stretch[i].sense == Sense::Verb(Verb::Lift);
         if picks && stretch[..i].iter().any(|p| p.sense == Sense::Verb(Verb::Blow)) {
             stretch[i].sense = Sense::Filler;

@@ -165,7 +165,11 @@ fn times(clause: &mut Clause, draft: &mut Draft, before: &Spec) -> Result<bool, 
         pin.to_s = Until::Time(at_s);
         format!("{name} of {} is let go at {}", pin.object, say::seconds(at_s))
     } else {
-        return later(clause, draft, before, at_s);
+        let put_off = later(clause, draft, before, at_s)?;
+        if !put_off && draft.corrects {
+            return Err("the turn before made nothing that has a time: \"push it left at 2 s\", \"melt at 2 s\"".to_owned());
+        }
+        return Ok(put_off);
     };
     clause.take_at();
     clause.take_sense(&Sense::Instead);

@@ -104,9 +104,13 @@ fn follow(draft: &mut Draft, how: Follow) -> Result<(), Refusal> {
         let changed = before.events.iter().find(|e| e.name == event.name) != Some(event);
         if changed
             && let Some(push) = event.push_m_s
+            && !(matches!(how, Follow::Opposite) && turned(push) == push)
             && let Some(event) = event_again(draft, event)
         {
-            event.push_m_s = Some(along(DVec3::ZERO, DVec3::from_array(push), how, true));
+            event.push_m_s = Some(match how {
+                Follow::Opposite => turned(push),
+                Follow::On(_) => along(DVec3::ZERO, DVec3::from_array(push), how, true),
+            });
             said.push(format!("{} of {}", event.name, event.object));
         }
     }
@@ -168,11 +172,19 @@ fn object(draft: &mut Draft, index: usize, now: &Object, was: &Object, how: Foll
         if was == is {
             return is;
         }
-        let after = along(DVec3::from_array(was), DVec3::from_array(is), how, rate);
+        let after = match along(DVec3::from_array(was), DVec3::from_array(is), how, rate) {
+            // Nobody jumps or throws into the ground.
+            after if what == "velocity" && matches!(how, Follow::Opposite) && is[2] > 0.0 => [after[0], after[1], is[2]],
+            after => after,
+        };
         said.push(format!("{what} of {name} ({}, {}, {})", say::short(after[0]), say::short(after[1]), say::short(after[2])));
         after
     };
-    let velocity = vector(was.velocity_m_s, now.velocity_m_s, true, "velocity");
+    let velocity = if matches!(how, Follow::Opposite) && turned(now.velocity_m_s) == now.velocity_m_s {
+        now.velocity_m_s
+    } else {
+        vector(was.velocity_m_s, now.velocity_m_s, true, "velocity")
+    };
     let spin = vector(was.spin_rad_s, now.spin_rad_s, true, "spin");
     let offset = vector(was.offset_m, now.offset_m, false, "offset");
     let rotate = vector(was.rotate_deg, now.rotate_deg, false, "rotation");
@@ -194,6 +206,12 @@ fn object(draft: &mut Draft, index: usize, now: &Object, was: &Object, how: Foll
     if let Some(density) = draft.material(index).density_mut() {
         scalar((was, is), how, density, |v| format!("density of {name} {} kg/m³", say::short(v)), said);
     }
+}
+
+/// The other way of a velocity: what goes up does so still.
+fn turned(velocity: [f64; 3]) -> [f64; 3] {
+    let [x, y, z] = velocity;
+    say::tidy3(DVec3::new(-x, -y, if z > 0.0 { z } else { -z }))
 }
 
 /// A vector that went from `was` to `is`. Of a rate the changed part is turned round or grown by half for each share;
