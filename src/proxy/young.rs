@@ -111,7 +111,7 @@ fn warnings(value_pa: f64, needed_pa: f64) -> Vec<String> {
     let short = needed_pa > value_pa;
     let text = || {
         format!(
-            "it is so slender that it will sway and sag under its own weight: to stand with room to spare it would need a stiffness of {}, and {} is the \
+            "it is so slender that it may sway and sag once it moves: to stand with room to spare it would need a stiffness of {}, and {} is the \
              most that is chosen unasked; \"stiffness {}\" gives it more",
             pascals(needed_pa),
             pascals(value_pa),
