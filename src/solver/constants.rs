@@ -117,7 +117,7 @@ pub const EDDIES_MOST: f32 = 1.0 / (VISCOUS_BOUND * VISCOUS);
 pub const THIN_OUT: f32 = 25.0;
 /// What is too dense from the start thins out as if springs of this over a cell pulled its excess down: little beside weight,
 /// and without a jerk.
-pub const EASE_OUT_M_S2: f32 = 4.0;
+pub const EASE_OUT_M_S2: f32 = 8.0;
 /// Gradient of density, times the cell, from which on a particle counts to a liquid's surface.
 pub const SURFACE_FROM: f32 = 0.25;
 /// And at which it does wholly.
