@@ -13,7 +13,7 @@ mod prestress;
 mod shown;
 mod sph;
 mod trouble;
-mod twins;
+pub(super) mod twins;
 mod validation;
 mod volume;
 

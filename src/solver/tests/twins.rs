@@ -10,7 +10,7 @@ use crate::solver::substance::Substance;
 use crate::solver::twin::{self, Surroundings};
 use crate::solver::validate::{append, block};
 use crate::solver::watch::Control;
-use crate::solver::{Collider, PinRegion, Plane, Settings};
+use crate::solver::{Activation, Collider, PinRegion, Plane, Settings};
 use crate::spec::{BoxShape, CapsuleShape, ColliderShape, ElasticModel, PlaneShape, SphereShape};
 use glam::{IVec3, Mat3, Vec3};
 
@@ -93,6 +93,11 @@ pub(super) fn scene_on(gpu: &Gpu, substances: [Substance; 2]) -> (Solver, Vec<Pa
     (solver, states)
 }
 
+/// The shown deformations; one row that means nothing where no law keeps any.
+pub(super) fn shown_rows(solver: &Solver) -> Vec<[[f32; 4]; 3]> {
+    gpu().read(solver.laws.shown(), if solver.laws.kept().is_some() { solver.params.count as usize } else { 1 }).expect("rows")
+}
+
 pub(super) fn gpu() -> Gpu {
     Gpu::shared_for_tests().expect("a device")
 }
@@ -112,7 +117,7 @@ pub(super) fn sort(solver: &mut Solver) {
 pub(super) const SUBSTEP: Substep = Substep { dt_s: DT_S, dt_next_s: DT_S, index: 0, job: 0, since_s: 0.003, lag: 0 };
 
 /// Where nodes are stored after a sort.
-pub(super) struct Stored {
+pub(in crate::solver) struct Stored {
     slots: Vec<u32>,
     params: Params,
 }
@@ -135,7 +140,7 @@ impl Stored {
 }
 
 /// Nodes of all blocks that a grid has room for.
-pub(super) fn node_count(solver: &Solver) -> usize {
+pub(in crate::solver) fn node_count(solver: &Solver) -> usize {
     (solver.grid.as_ref().expect("a grid").capacity + 1) * 64
 }
 
@@ -204,10 +209,11 @@ fn one_substep_pass_by_pass() {
 
 #[test]
 fn one_substep_of_other_laws() {
-    let [_, _, muscle, hardening, _, viscoplastic, sand, _, snow] = super::laws::all_laws().try_into().expect("nine");
+    let [_, neo_hookean, muscle, hardening, softening, viscoplastic, sand, sticky, snow] = super::laws::all_laws().try_into().expect("nine");
     follows_the_twins([muscle, hardening]);
-    follows_the_twins([viscoplastic, sand]);
-    follows_the_twins([snow.clone(), snow]);
+    follows_the_twins([viscoplastic, softening]);
+    follows_the_twins([sand, sticky]);
+    follows_the_twins([snow, neo_hookean]);
     follows_the_twins(super::laws::liquids());
 }
 
@@ -221,8 +227,7 @@ pub(super) fn follows_the_twins_on(device: &Gpu, substances: [Substance; 2]) {
     let pins = [obstacles::pin(&solver.settings.pins[0], &solver.grips[0].pose, 0, CELL_M, 0.0)];
     let accelerations = [Vec3::ZERO, Vec3::new(3.0, -2.0, 1.0)];
     let substances = solver.laws.substances.clone();
-    let shown_before: Vec<[[f32; 4]; 3]> =
-        gpu().read(solver.laws.shown(), if solver.laws.kept().is_some() { states.len() } else { 1 }).expect("rows");
+    let shown_before = shown_rows(&solver);
     let around = Surroundings { params: solver.params, colliders: &colliders, pins: &pins, accelerations: &accelerations, substances: &substances };
     sort(&mut solver);
     let (passes, groups) = (solver.passes.clone(), solver.particle_groups());
@@ -309,7 +314,7 @@ pub(super) fn follows_the_twins_on(device: &Gpu, substances: [Substance; 2]) {
         assert!(worst <= tolerance(want) * scale, "A of {name}: off by {worst} of {scale}");
         assert!((got.history - want.history).abs() < 3e-5 * want.history.abs().max(1.0), "history of {name}: {} and {}", got.history, want.history);
     }
-    let shown: Vec<[[f32; 4]; 3]> = gpu().read(solver.laws.shown(), shown_before.len()).expect("rows");
+    let shown = shown_rows(&solver);
     for (s, (before, after)) in before.iter().zip(shown_before.iter().zip(&shown)) {
         let matrix = |rows: &[[f32; 4]; 3]| Mat3::from_cols_array_2d(&rows.map(|r| [r[0], r[1], r[2]])).transpose();
         match substances[s.substance()].shown_stretch() {
@@ -368,11 +373,23 @@ fn measure_kick_and_frame_see_what_the_host_sees() {
 
 #[test]
 fn rounds_of_the_prestress_follow_the_twins() {
+    let fibre = Vec3::new(1.0, 2.0, -1.0);
+    let laws = [
+        Substance::default(),
+        Substance::Muscle { model: ElasticModel::NeoHookean, fibre, activation: Activation::Curve(vec![(0.0, 0.5)]) },
+        Substance::Plastic { yield_stress_pa: 2e3, hardening_pa: 2e4 },
+        Substance::Viscoplastic { yield_stress_pa: 2e3, viscosity_pa_s: 30.0 },
+    ];
+    laws.into_iter().for_each(rounds_follow_the_twins_of);
+}
+
+fn rounds_follow_the_twins_of(substance: Substance) {
     let mut noise = Noise(3);
     let mut particles = block(Vec3::ZERO, Vec3::new(0.15, 0.15, 0.2), 0.025, 2e5, 0.3);
     for x in &mut particles.position_m {
         *x += noise.vec() * 0.005 - Vec3::Z * 0.005;
     }
+    particles.substances = vec![substance.clone()];
     let mut settings = Settings::new(CELL_M);
     settings.ground = Some(Plane { height_m: 0.0, friction: 0.4, restitution: 0.0 });
     let mut solver = solver(settings, &particles);
@@ -390,10 +407,10 @@ fn rounds_of_the_prestress_follow_the_twins() {
     let stored = Stored::of(&solver);
     for (node, u) in &want {
         let found = Vec3::from_slice(&got.displacements[stored.node(node, 0)]).as_dvec3();
-        assert!((found - *u).length() < 2e-3 * largest, "node {node:?}: {found} and {u} of {largest}");
+        assert!((found - *u).length() < 2e-3 * largest, "{substance:?}, node {node:?}: {found} and {u} of {largest}");
     }
     for (found, s) in got.adopted.iter().zip(&got.pseudo) {
         let f = twin::prestress::adopted(s, &want, &around).as_mat3();
-        assert!(found.f().abs_diff_eq(f, 1e-4), "F of particle {}: {} and {f}", s.index, found.f());
+        assert!(found.f().abs_diff_eq(f, 1e-4), "{substance:?}, F of particle {}: {} and {f}", s.index, found.f());
     }
 }

@@ -198,6 +198,16 @@ pub fn respond(substance: &Substance, trial: DMat3, m: &Matter, dt_s: f64) -> An
     }
 }
 
+/// `resting_stress` of `laws.wgsl`: what a law bears as long as nothing yields and no muscle pulls.
+pub fn resting_stress(substance: &Substance, f: DMat3, mu: f64, lambda: f64) -> DMat3 {
+    let matter = Matter { mu, lambda, history: 0.0, activation: 0.0, gradient: DMat3::ZERO };
+    match substance {
+        Substance::Plastic { .. } | Substance::Viscoplastic { .. } => hencky(f, &matter, 0.0, &|_| None).tau,
+        Substance::Muscle { model, .. } => kirchhoff(f, mu, lambda, *model == ElasticModel::NeoHookean),
+        _ => respond(substance, f, &matter, 0.0).tau,
+    }
+}
+
 /// `g2p_laws.wgsl`: the shown deformation after a substep.
 pub fn shown(substance: &Substance, old: DMat3, gradient: DMat3, dt_s: f64) -> DMat3 {
     let Some([least, most]) = substance.shown_stretch() else { return old };

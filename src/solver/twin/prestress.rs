@@ -1,5 +1,6 @@
 //! The search for the prestress: one system of conjugate gradients in f64.
 
+use super::laws::resting_stress;
 use super::{Grid, Surroundings, gather, p2g};
 use crate::solver::constants::{CARRY_MOST, CARRY_SHARE, CARRY_STEPS};
 use crate::solver::state::ParticleState;
@@ -69,7 +70,7 @@ pub fn rounds(states: &[ParticleState], around: &Surroundings, rounds: u32, ligh
 pub fn adopted(state: &ParticleState, solution: &Field, around: &Surroundings) -> DMat3 {
     let grid: Grid = solution.iter().map(|(node, u)| (*node, super::Node { velocity: u.as_vec3(), ..Default::default() })).collect();
     let (mu, lambda) = (f64::from(state.mu_pa), f64::from(state.lambda_pa));
-    let law = |f: DMat3| around.respond(state, f, DMat3::ZERO, 0.0).tau;
+    let law = |f: DMat3| resting_stress(&around.substances[state.substance()], f, mu, lambda);
     let wanted = law(state.f().as_dmat3()) + linear_stress(strain(gather(&grid, state.position_m, &around.params).1), mu, lambda);
     (0..CARRY_STEPS).fold(state.f().as_dmat3(), |f, _| {
         let missing = wanted - law(f);

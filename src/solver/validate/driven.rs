@@ -17,14 +17,18 @@ fn body(centre: Vec3, velocity: Vec3) -> Particles {
     particles
 }
 
-fn under(gpu: &Gpu, particles: &Particles, gravity_m_s2: f32, fill: impl FnOnce(&mut Force)) -> Result<Solver, SolverError> {
-    let mut force = Force::new("field", "body", 0.0, Until::End);
-    fill(&mut force);
+/// What a force that is a field does to an object.
+pub(super) fn field(force: &Force, object: u32) -> Result<Field, SolverError> {
     let refused = |what: String| SolverError::Input { what, expected: "a force that is a field".to_owned() };
     let program = force.program(&FieldFacts::default()).map_err(|fault| refused(fault.to_string()))?;
     let acceleration = program.ok_or_else(|| refused("a constant".to_owned()))?;
-    let field = Field { name: force.name.clone(), object: 0, from_s: force.from_s, to_s: force.ends_s(), acceleration };
-    let settings = Settings { gravity_m_s2: Vec3::new(0.0, 0.0, -gravity_m_s2), fields: vec![field], ..Settings::new(0.05) };
+    Ok(Field { name: force.name.clone(), object, from_s: force.from_s, to_s: force.ends_s(), acceleration })
+}
+
+fn under(gpu: &Gpu, particles: &Particles, gravity_m_s2: f32, fill: impl FnOnce(&mut Force)) -> Result<Solver, SolverError> {
+    let mut force = Force::new("field", "body", 0.0, Until::End);
+    fill(&mut force);
+    let settings = Settings { gravity_m_s2: Vec3::new(0.0, 0.0, -gravity_m_s2), fields: vec![field(&force, 0)?], ..Settings::new(0.05) };
     Solver::new(gpu, settings, particles)
 }
 
@@ -46,12 +50,12 @@ pub(super) fn drag(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         plot.expected.push([time_s, 2.0 * (-5.0 * time_s).exp()]);
         plot.measured.push([time_s, velocity(&slowed)?.x]);
     }
-    let linear = Check::new("drag, linear", "v0 e^(-k t)", "Stokes's law", "m/s");
+    let linear = Check::new("drag, linear", "v0 e^(-k t)", "Stokes 1851: drag by speed", "m/s");
     let linear = linear.compare(2.0 * (-2.0f64).exp(), velocity(&slowed)?.x, 0.01).with_plot(plot);
     let quadratic = |force: &mut Force| force.drag = Some(Drag { linear_per_s: 0.0, quadratic_per_m: 2.5 });
     let mut falling = under(gpu, &body(Vec3::ZERO, Vec3::ZERO), 9.81, quadratic)?;
     falling.advance(1.5, &stop)?;
-    let terminal = Check::new("drag, terminal speed", "sqrt(g / c)", "Newton's drag", "m/s");
+    let terminal = Check::new("drag, terminal speed", "sqrt(g / c)", "Newton 1687, book 2: drag by its square", "m/s");
     Ok(vec![linear, terminal.compare((9.81f64 / 2.5).sqrt(), -velocity(&falling)?.z, 0.02)])
 }
 
@@ -76,7 +80,7 @@ pub(super) fn spring(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         (Some(first), Some(last)) => 2.0 * (last - first) / swings,
         _ => f64::NAN,
     };
-    let check = Check::new("spring period", "2 pi / sqrt(k)", "harmonic oscillator", "s");
+    let check = Check::new("spring period", "2 pi / sqrt(k)", "Hooke 1678: x'' = -k x", "s");
     Ok(vec![check.compare(std::f64::consts::TAU / f64::sqrt(stiffness), period_s, 0.02)])
 }
 
@@ -85,7 +89,7 @@ pub(super) fn vortex(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let swirl = Vortex { centre_m: Auto::Value([0.0; 3]), axis: [0.0, 0.0, 1.0], speed_m_s: 3.0, radius_m: 1.0, lift_m_s: 0.0, drag_per_s: 1.0 };
     let mut solver = under(gpu, &body(Vec3::X, Vec3::new(0.0, 3.0, 0.0)), 0.0, |force| force.vortex = Some(swirl))?;
     solver.advance(1.0, &Stop::default())?;
-    let check = |name, unit| Check::new(name, "unchanged after half a turn", "steady circular flow", unit);
+    let check = |name, unit| Check::new(name, "unchanged after half a turn", "Huygens 1673: a steady circle, carried by the flow", unit);
     Ok(vec![
         check("swirl, speed of what floats in it", "m/s").compare(3.0, velocity(&solver)?.length(), 0.02),
         check("swirl, radius of its circle", "m").compare(1.0, centre_m(&solver.states()?).length(), 0.03),
@@ -108,7 +112,7 @@ pub(super) fn same_bits(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     second.advance(0.08, &stop)?;
     third.restore(&kept)?;
     third.advance(0.08, &stop)?;
-    let check = |name| Check::new(name, "bytes that differ", "each particle by itself", "bytes");
+    let check = |name| Check::new(name, "bytes that differ", "IEEE 754: each particle by itself", "bytes");
     Ok(vec![
         check("fields, a second run").compare(0.0, differing(&end, &second.checkpoint()?), 0.0),
         check("fields, from a checkpoint").compare(0.0, differing(&end, &third.checkpoint()?), 0.0),

@@ -4,7 +4,6 @@ use super::Check;
 use super::bodies::{pool, walls};
 use crate::Stop;
 use crate::gpu::Gpu;
-use crate::solver::constants::WALL_FRICTION;
 use crate::solver::core::Solver;
 use crate::solver::substance::{Substance, liquid_bulk_pa};
 use crate::solver::types::{Plane, Settings, SolverError};
@@ -37,17 +36,18 @@ fn speed_m_s(gpu: &Gpu, viscosity_pa_s: f32, drive_m_s2: f32, start_m_s: f32, ti
 
 /// A sheet that is left to itself, one on a slope, and one so viscous that it creeps.
 pub(super) fn brake(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
-    let per_m = f64::from(WALL_FRICTION / THICK_M);
+    // What turbulence takes from a film on a rough wall: f / 8 of rho v^2, f = 0.03.
+    let per_m = 0.03 / 8.0 / f64::from(THICK_M);
     let (start, seconds) = (3.0, 0.2);
-    let slows = Check::new("film slows down", "v0 / (1 + f v0 t / (8 h)), f = 0.03", "Darcy and Weisbach", "m/s");
+    let slows = Check::new("film slows down", "v0 / (1 + f v0 t / (8 h)), f = 0.03", "Weisbach 1845, Darcy 1857: tau = f rho v^2 / 8", "m/s");
     let slows = slows.compare(start / (1.0 + per_m * start * seconds), speed_m_s(gpu, 1e-6, 0.0, start as f32, seconds)?, 0.05);
     let (drive, start, seconds) = (4.9f64, 1.0, 0.3);
     let terminal = (drive / per_m).sqrt();
     let reached = terminal * (drive * seconds / terminal + (start / terminal).atanh()).tanh();
-    let runs = Check::new("film on a slope", "towards sqrt(8 g h sin a / f)", "Chezy 1769; Darcy and Weisbach", "m/s");
+    let runs = Check::new("film on a slope", "towards sqrt(8 g h sin a / f)", "Chezy 1769; Weisbach 1845, Darcy 1857", "m/s");
     let runs = runs.compare(reached, speed_m_s(gpu, 1e-6, drive as f32, start as f32, seconds)?, 0.05);
     let (thick, viscosity) = (f64::from(THICK_M), 0.1);
-    let creeps = Check::new("viscous film on a slope", "rho g sin a h^2 / (3 mu)", "Nusselt 1916", "m/s");
+    let creeps = Check::new("film so viscous that it creeps", "rho g sin a h^2 / (3 mu)", "Nusselt 1916", "m/s");
     let nusselt = f64::from(DENSITY_KG_M3) * drive * thick * thick / (3.0 * viscosity);
     Ok(vec![slows, runs, creeps.compare(nusselt, speed_m_s(gpu, viscosity as f32, drive as f32, 0.0, 0.15)?, 0.05)])
 }

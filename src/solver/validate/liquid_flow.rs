@@ -112,15 +112,25 @@ pub(super) fn viscous(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let poiseuille = |eta: f64| move |y: f64| rho * g / (2.0 * eta) * gap * gap * y * (1.0 - y);
     let formula = "u = rho g y (W - y) / (2 eta)";
     let thin = between_walls(gpu, 120.0, GRAVITY_M_S2, 1.0, 0.0, 0.06)?;
-    compare(["V20 Poiseuille, 120 Pa s", "V20 Poiseuille, 120 Pa s, shape"], formula, "Poiseuille", fit(&thin, poiseuille(120.0)));
+    compare(
+        ["V20 Poiseuille, 120 Pa s", "V20 Poiseuille, 120 Pa s, shape"],
+        formula,
+        "Poiseuille 1840, between planes",
+        fit(&thin, poiseuille(120.0)),
+    );
     let thick = between_walls(gpu, 1.2e4, GRAVITY_M_S2, 1.0, 0.0, 1.0)?;
-    compare(["V20 Poiseuille, 12000 Pa s", "V20 Poiseuille, 12000 Pa s, shape"], formula, "Poiseuille", fit(&thick, poiseuille(1.2e4)));
+    compare(
+        ["V20 Poiseuille, 12000 Pa s", "V20 Poiseuille, 12000 Pa s, shape"],
+        formula,
+        "Poiseuille 1840, between planes",
+        fit(&thick, poiseuille(1.2e4)),
+    );
     // A driven core of a fifth of the gap drags the rest by its two sides.
     let core = 0.2;
     let tent = |y: f64| rho * g * gap * core / 2.0 * (0.5 - (y - 0.5).abs()) * gap / 120.0;
     let mut sheared = between_walls(gpu, 120.0, GRAVITY_M_S2, core as f32, 0.0, 0.06)?;
     sheared.retain(|(y, _)| (y - 0.5).abs() > 0.5 * core);
-    compare(["V20 Couette, 120 Pa s", "V20 Couette, 120 Pa s, shape"], "u = tau y / eta", "Couette", fit(&sheared, tent));
+    compare(["V20 Couette, 120 Pa s", "V20 Couette, 120 Pa s, shape"], "u = tau y / eta", "Couette 1890", fit(&sheared, tent));
     Ok(checks)
 }
 

@@ -56,7 +56,7 @@ pub(super) fn hydrostatic(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     }
     // Under its own weight each height z of the column sinks by rho g (H z - z^2 / 2) / K, on average H^2 / 3.
     let sunk = f64::from(DENSITY_KG_M3) * g * h * h / (3.0 * f64::from(bulk_pa));
-    let source = "hydrostatics";
+    let source = "Stevin 1586, Pascal 1663";
     Ok(vec![
         Check::new("V19 pressure under water", "p = rho g (H - z)", source, "of the formula").compare(1.0, pressure, 0.02),
         Check::new("V19 volume at rest", "H - 2 rho g H^2 / (3 K), by the mean height", source, "m").compare(h - 2.0 * sunk, height, 0.02),
@@ -78,7 +78,7 @@ pub(super) fn sloshing(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         solver.advance(settled_s + 0.05 * f64::from(k), &Stop::default())?;
         height += 2.0 * mean(&solver.states()?, |s| f64::from(s.position_m.z)) / f64::from(samples);
     }
-    let check = Check::new("V19 volume after sloshing", "half the column's height, by the mean height", "volume is kept", "m");
+    let check = Check::new("V19 sloshing, volume after it", "half the column's height, by the mean height", "Euler 1757: div v = 0", "m");
     Ok(vec![check.compare(0.5 * f64::from(depth_m), height, 0.02)])
 }
 
@@ -112,7 +112,7 @@ pub(super) fn laplace(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         let inner: Vec<_> = solver.states()?.into_iter().filter(|s| s.position_m.length() < 0.4 * radius_m).collect();
         pressure += mean(&inner, pressure_pa) / f64::from(samples);
     }
-    let check = Check::new("V22 pressure in a drop", "2 sigma / R", "Laplace", "Pa");
+    let check = Check::new("V22 pressure in a drop", "2 sigma / R", "Young 1805, Laplace 1806", "Pa");
     Ok(vec![check.compare(2.0 * f64::from(tension_n_m) / radius, pressure, 0.1)])
 }
 

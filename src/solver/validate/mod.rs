@@ -19,12 +19,13 @@ mod sliding;
 mod sph;
 mod sph_drops;
 mod spread;
+mod strained;
 mod waves;
 
 #[cfg(test)]
 pub(super) use bodies::{append, ball, block, joined, keep, pool, rigid as rigid_body};
 #[cfg(test)]
-pub(super) use captured::stems;
+pub(super) use captured::{stems, swings_m};
 #[cfg(test)]
 pub(super) use rigid::momenta;
 
@@ -112,6 +113,26 @@ impl Case {
     pub fn run(&self, gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         (self.run)(gpu)
     }
+
+    /// What is wrong with how its checks are put: each has a formula, a source and a name of its own, which
+    /// begins with that of this case and of no other that it could be taken for.
+    pub fn flaw(&self, checks: &[Check]) -> Option<String> {
+        let begins = |check: &Check, case: &Case| check.name.starts_with(case.name);
+        let fault = |check: &Check| {
+            let owner = CASES.iter().filter(|case| begins(check, case)).max_by_key(|case| case.name.len());
+            let what = if owner.is_none_or(|owner| owner.name != self.name) {
+                "does not begin with the name of its case"
+            } else if checks.iter().filter(|other| other.name == check.name).count() > 1 {
+                "is not the only one of its name"
+            } else if check.formula.is_empty() || check.source.is_empty() {
+                "has no formula or no source"
+            } else {
+                return None;
+            };
+            Some(format!("{} {what}", check.name))
+        };
+        if checks.is_empty() { Some(format!("{} checks nothing", self.name)) } else { checks.iter().find_map(fault) }
+    }
 }
 
 /// Every case, in order.
@@ -130,10 +151,12 @@ pub const CASES: &[Case] = &[
     Case { name: "V11", quick: true, run: sliding::incline },
     Case { name: "V12", quick: true, run: rigid::cradle },
     Case { name: "V13", quick: true, run: grains::incline },
-    Case { name: "V13 slope at rest", quick: false, run: grains::repose },
+    Case { name: "V13 heap", quick: false, run: grains::repose },
+    Case { name: "V13 cohesion", quick: true, run: grains::cohesion },
     Case { name: "V14", quick: false, run: grains::slab },
     Case { name: "V15", quick: false, run: grains::cylinder },
     Case { name: "V16", quick: true, run: pulled::tension },
+    Case { name: "large strain", quick: true, run: pulled::large_strain },
     Case { name: "Bingham", quick: true, run: pulled::bingham },
     Case { name: "V17", quick: true, run: flakes::packs },
     Case { name: "muscle", quick: true, run: muscles::shortens },

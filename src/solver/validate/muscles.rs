@@ -49,7 +49,7 @@ pub(super) fn shortens(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         across += mean(2) / f64::from(samples);
     }
     let (l1, l2) = free_stretches();
-    let source = "no stress on a free neo-Hookean muscle, E a = 0.5 E";
+    let source = "Bonet and Wood 2008, neo-Hookean, and E a = 0.5 E along the fibres: no stress";
     Ok(vec![
         Check::new("muscle, length", "l1 = l2 sqrt(mu / (mu + E a))", source, "1").compare(l1, along, 0.02),
         Check::new("muscle, width", "mu (l2^2 - 1) + lambda ln(l1 l2^2) = 0", source, "1").compare(l2, across, 0.02),

@@ -28,8 +28,8 @@ fn slid_m(gpu: &Gpu, slope: f64, friction: f64, from_s: f64, to_s: f64) -> Resul
 pub(super) fn incline(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let (slope, friction, seconds) = (30f64.to_radians(), 0.3, 0.5);
     let expected = 0.5 * GRAVITY_M_S2 * (slope.sin() - friction * slope.cos()) * seconds * seconds;
-    let slides = Check::new("V11 elastic cube slides", "g (sin a - mu cos a) t^2 / 2", "Coulomb", "m");
-    let stays = Check::new("V11 elastic cube stays", "0 where tan a < mu by a degree", "Coulomb", "m");
+    let slides = Check::new("V11 elastic cube slides", "g (sin a - mu cos a) t^2 / 2", "Coulomb 1785: friction mu N", "m");
+    let stays = Check::new("V11 elastic cube stays", "0 where tan a < mu by a degree", "Coulomb 1785: friction mu N", "m");
     let gentle = (0.3f64.atan().to_degrees() - 1.0).to_radians();
     Ok(vec![
         slides.compare(expected, slid_m(gpu, slope, friction, 0.0, seconds)?, 0.05),

@@ -71,8 +71,8 @@ pub(super) fn dam_break(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     // The experiment's clock starts some way into the motion: the course is ahead of it by a constant time.
     let speed = |curve: &[[f64; 2]]| (curve[4][1] - curve[2][1]) / (curve[4][0] - curve[2][0]);
     let source = "Martin and Moyce 1952, as digitised in PySPH";
-    let course = Check::new("V18 speed of a dam break", "front / a over t sqrt(2 g / a) from 2.0 to 3.3, measured", source, "");
-    let end = Check::new("V18 front of a dam break", "front / a at t sqrt(2 g / a) = 3.345, measured", source, "");
+    let course = Check::new("V18 SPH speed of a dam break", "front / a over t sqrt(2 g / a) from 2.0 to 3.3, measured", source, "");
+    let end = Check::new("V18 SPH front of a dam break", "front / a at t sqrt(2 g / a) = 3.345, measured", source, "");
     Ok(vec![course.compare(speed(&MARTIN_MOYCE), speed(&measured), 0.1), end.compare(MARTIN_MOYCE[4][1], measured[4][1], 0.1).with_plot(plot)])
 }
 
@@ -128,9 +128,9 @@ pub(super) fn hydrostatic(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         middle += states.iter().map(|s| f64::from(s.position_m.z)).sum::<f64>() * share;
         energy += states.iter().map(|s| f64::from(s.velocity_m_s.length_squared())).sum::<f64>() * share;
     }
-    let weight = Check::new("V19 pressure over depth", "dp/dz = -rho g", "hydrostatics", "Pa/m");
-    let volume = Check::new("V19 volume at rest", "mean height of the particles, as filled", "incompressibility", "m");
-    let rest = Check::new("V19 motion at rest", "v rms / sqrt(g H) goes to 0", "hydrostatics", "");
+    let weight = Check::new("V19 SPH pressure over depth", "dp/dz = -rho g", "Stevin 1586, Pascal 1663", "Pa/m");
+    let volume = Check::new("V19 SPH volume at rest", "mean height of the particles, as filled", "Euler 1757: div v = 0", "m");
+    let rest = Check::new("V19 SPH motion at rest", "v rms / sqrt(g H) goes to 0", "Stevin 1586: forces balance", "");
     Ok(vec![
         weight.compare(-1000.0 * GRAVITY_M_S2, slope(&points), 0.02),
         volume.compare(0.5 * f64::from(height), middle, 0.02),
@@ -204,9 +204,9 @@ pub(super) fn poiseuille(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let [expected, measured] = channel(gpu, 16, 50.0)?;
     let apart = measured.iter().zip(&expected).map(|(m, e)| (m[1] - e[1]).powi(2)).sum::<f64>() / measured.len() as f64;
     let top = expected.iter().map(|p| p[1]).fold(0.0, f64::max);
-    let source = "plane Poiseuille flow";
-    let mean = Check::new("V20 Poiseuille, mean velocity", "g W^2 / (12 nu)", source, "m/s");
-    let shape = Check::new("V20 Poiseuille, profile", "rms distance from g x (W - x) / (2 nu), of its top", source, "");
+    let source = "Poiseuille 1840, between planes: nu u'' = -g";
+    let mean = Check::new("V20 SPH Poiseuille, mean velocity", "g W^2 / (12 nu)", source, "m/s");
+    let shape = Check::new("V20 SPH Poiseuille, profile", "rms distance from g x (W - x) / (2 nu), of its top", source, "");
     let plot = Plot {
         caption: "Velocity across a channel of 16 spacings in which a thick liquid falls".to_owned(),
         x: "x, m",
@@ -216,10 +216,10 @@ pub(super) fn poiseuille(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     };
     let mut checks = vec![mean.compare(mean_of(&expected), mean_of(&measured), 0.05), shape.compare(0.0, apart.sqrt() / top, 0.08).with_plot(plot)];
     let others = [
-        ("V20 Poiseuille, 10 spacings, mean velocity", 10, 50.0),
-        ("V20 Poiseuille, 24 spacings, mean velocity", 24, 200.0),
-        ("V20 Poiseuille, 1e3 Pa s, mean velocity", 16, 1e3),
-        ("V20 Poiseuille, 1e6 Pa s, mean velocity", 16, 1e6),
+        ("V20 SPH Poiseuille, 10 spacings, mean velocity", 10, 50.0),
+        ("V20 SPH Poiseuille, 24 spacings, mean velocity", 24, 200.0),
+        ("V20 SPH Poiseuille, 1e3 Pa s, mean velocity", 16, 1e3),
+        ("V20 SPH Poiseuille, 1e6 Pa s, mean velocity", 16, 1e6),
     ];
     for (name, across, viscosity_pa_s) in others {
         let [expected, measured] = channel(gpu, across, viscosity_pa_s)?;
@@ -270,6 +270,7 @@ pub(super) fn buoyancy(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         let level = mean + (mean * mean + narrow * bottom * (2.0 * mean - bottom)).sqrt();
         under += if k > 40 - samples { f64::from((level - bottom) / CUBE) / f64::from(samples) } else { 0.0 };
     }
-    let check = Check::new("V23 floating cube", "submerged share = density over the liquid's", "Archimedes", "");
+    let check =
+        Check::new("V23 SPH floating cube", "submerged share = density over the liquid's", "Archimedes, On Floating Bodies, book 1, prop. 5", "");
     Ok(vec![check.compare(0.5, under, 0.05)])
 }

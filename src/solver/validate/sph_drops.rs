@@ -56,8 +56,11 @@ fn carried_pa(states: &[ParticleState], pressures: &[f32], within_m: f64) -> f64
 /// V22: pressure in drops of two sizes, in cells, and that they stay round.
 pub(super) fn laplace(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let mut checks = Vec::new();
-    let names = ["V22 SPH pressure in a drop of 3.5 cells", "V22 SPH pressure in a drop of 5 cells"];
-    for (name, cells) in names.into_iter().zip([3.5, 5.0]) {
+    let names = [
+        ["V22 SPH pressure in a drop of 3.5 cells", "V22 SPH roundness of a drop of 3.5 cells"],
+        ["V22 SPH pressure in a drop of 5 cells", "V22 SPH roundness of a drop of 5 cells"],
+    ];
+    for ([name, round], cells) in names.into_iter().zip([3.5, 5.0]) {
         let (particles, radius_m) = drop(cells, 1.0, 0.05);
         let mut solver = Solver::new(gpu, weightless(), &particles)?;
         let (mut pressure, samples) = (0.0, 10);
@@ -66,10 +69,14 @@ pub(super) fn laplace(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
             let within_m = radius_m - 1.3 * f64::from(CELL_M);
             pressure += carried_pa(&solver.states()?, &solver.liquid_pressures_pa()?, within_m) / f64::from(samples);
         }
-        checks.push(Check::new(name, "2 sigma / R", "Laplace", "Pa").compare(2.0 * f64::from(TENSION_N_M) / radius_m, pressure, 0.1));
+        checks.push(Check::new(name, "2 sigma / R", "Young 1805, Laplace 1806", "Pa").compare(
+            2.0 * f64::from(TENSION_N_M) / radius_m,
+            pressure,
+            0.1,
+        ));
         let states = solver.states()?;
         let farthest = states.iter().map(|s| (s.position_m.as_dvec3() - middle(&states)).length()).fold(0.0, f64::max);
-        let round = Check::new("V22 SPH roundness", "farthest particle from the middle, of R", "least surface", "");
+        let round = Check::new(round, "farthest particle from the middle, of R", "Plateau 1873: least surface", "");
         checks.push(round.compare(1.0, farthest / radius_m, 0.12));
     }
     Ok(checks)

@@ -81,6 +81,6 @@ pub(super) fn grid(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
 
 /// Of one of smoothed particles.
 pub(super) fn sph(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
-    let names = ["SPH spread at 100 Pa s", "SPH spread at 10 Pa s", "SPH spread at 0.02 N/m, 2 Pa s", "SPH spread at 8 N/m, 2 Pa s"];
+    let names = ["spread SPH at 100 Pa s", "spread SPH at 10 Pa s", "spread SPH at 0.02 N/m, 2 Pa s", "spread SPH at 8 N/m, 2 Pa s"];
     all(gpu, smoothed, names)
 }

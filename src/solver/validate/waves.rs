@@ -73,7 +73,7 @@ pub(super) fn bar(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
             .collect(),
         measured: samples,
     };
-    let check = Check::new("V8 wave in a bar", "sqrt(E / rho) / (2 L)", "free ends, nu = 0", "Hz");
+    let check = Check::new("V8 wave in a bar", "sqrt(E / rho) / (2 L)", "Rayleigh 1877, ch. VII, free ends; nu = 0", "Hz");
     Ok(vec![check.compare(expected_hz, measured_hz, 0.03).with_plot(plot)])
 }
 
