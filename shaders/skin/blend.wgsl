@@ -6,6 +6,8 @@ struct Immediates {
     count: u32,
     // Between the particles that a Gaussian follows at rest.
     span_m: f32,
+    // Those from here on hang on a thread.
+    first_hung: u32,
 }
 var<immediate> params: Immediates;
 
@@ -18,7 +20,9 @@ var<immediate> params: Immediates;
 @group(0) @binding(4) var<storage, read> rest: array<vec4<f32>>;
 /// How far each particle that is drawn itself has parted from those around it, 0 to 1; a single 0 where none are.
 @group(0) @binding(5) var<storage, read> parted: array<f32>;
-@group(0) @binding(6) var<storage, read_write> geometry: array<vec4<f32>>;
+/// Where those of threads are held, from the origin; they go and turn with what is there, as if stiff.
+@group(0) @binding(6) var<storage, read> held: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> geometry: array<vec4<f32>>;
 
 fn delta_of(i: u32) -> Delta {
     return unpacked(delta[i]);
@@ -121,7 +125,17 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     }
     let at = moving[slot] * 4u;
     let centre = rest[at];
-    let d = blended(slot, centre.xyz - params.origin);
+    let hangs = !PAPER && slot >= params.first_hung;
+    let own = centre.xyz - params.origin;
+    var root = own;
+    if hangs {
+        root = held[slot - params.first_hung].xyz;
+    }
+    let d = blended(slot, root);
+    var moved = vec3(d.x.w, d.y.w, d.z.w);
+    if !PAPER {
+        moved = moved_by(d, root);
+    }
     var seen = 1.0;
     if !PAPER && sheds(particle[slot * VECTORS].x) {
         seen -= smoothstep(FADES_LOW, FADES_HIGH, parted[min(particle[slot * VECTORS].x, arrayLength(&parted) - 1u)]);
@@ -137,15 +151,15 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
             f = proper_gradient(d, slot);
             let r = polar_rotation(f);
             f = limited(f, r);
+            if hangs {
+                f = r;
+                moved += r * (own - root) - (own - root);
+            }
             turn = normalize(quaternion_product(quaternion(r), turn));
         }
         let c = f * mat3x3(a.x, a.y, a.z, a.y, a.w, b.x, a.z, b.x, b.y) * transpose(f);
         a = vec4(c[0].x, c[0].y, c[0].z, c[1].y);
         b = vec4(c[1].z, c[2].z, b.z, b.w);
-    }
-    var moved = vec3(d.x.w, d.y.w, d.z.w);
-    if !PAPER {
-        moved = moved_by(d, centre.xyz - params.origin);
     }
     geometry[at] = vec4(centre.xyz + moved, centre.w * seen);
     geometry[at + 1u] = a;

@@ -23,7 +23,7 @@ mod young;
 pub(crate) mod tests;
 
 pub use nearest::nearest;
-pub use young::{Stance, YoungAuto, young_auto};
+pub use young::{BEARING, Stance, YoungAuto, pascals, young_auto};
 
 use crate::scene::{Gaussians, morton_order};
 use crate::spec::ProxyKind;
@@ -32,7 +32,7 @@ use glam::Vec3;
 use sections::Sections;
 
 /// Version of this room, for stage keys.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;
 /// Share of the solid whose loss is worth a warning.
 const NOTABLE_SHARE: f64 = 1e-3;
 

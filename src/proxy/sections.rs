@@ -141,6 +141,11 @@ impl Sections {
         }
     }
 
+    /// The sections farther on that touch one.
+    pub fn beyond(&self, section: u32) -> &[u32] {
+        &self.sections[section as usize].beyond
+    }
+
     /// Whether a section is left out.
     pub fn is_out(&self, section: u32) -> bool {
         self.sections[section as usize].hung_at.is_some()

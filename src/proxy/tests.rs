@@ -294,6 +294,8 @@ fn automatic_stiffness_follows_greenhill() {
     assert!((stiff.value_pa / bound(0.1, 0.5) - 1.0).abs() < 0.2, "{} for {}", stiff.value_pa, bound(0.1, 0.5));
     assert!(stiff.local.iter().all(|&e| e == stiff.value_pa as f32));
     assert!(stiff.warnings.is_empty(), "{:?}", stiff.warnings);
+    // Up to its top it bears its weight as at its foot.
+    assert!(stiff.needs_pa.iter().all(|&e| e > 0.9 * stiff.value_pa as f32), "{:?}", stiff.needs_pa.iter().fold(f32::MAX, |a, &b| a.min(b)));
     // a flat one gives way across: rho g A h^3 / (7.84 I), I = a b^3 / 12
     let flat = (0..30 * 10 * 50).map(|i| Vec3::new((i % 30) as f32, (i / 30 % 10) as f32, (i / 300) as f32) * 0.01 + Vec3::splat(0.005));
     let flat = auto(&skin(flat.collect(), 0.004), 1000.0);

@@ -28,6 +28,8 @@ const THREAD_M: f64 = LOCAL_MOST_PA / (1000.0 * CAPTURE_GRAVITY_M_S2);
 /// And more than this over its reach too, whatever the scale of the scene: a square stem nine times as long as
 /// thick.
 const THREAD_SLENDERNESS: f64 = 500.0;
+/// Share of what it takes to stand firmly with which a place bears what it carries and sways at a touch: one and a half times the bound.
+pub const BEARING: f64 = 1.5 / SAFETY;
 /// A local value within this factor of the object's is not worth a difference.
 const NOTABLE: f64 = 1.05;
 
@@ -39,6 +41,9 @@ pub struct Stance {
     pub whole_m: f64,
     /// Where each Gaussian is.
     pub local_m: Vec<f32>,
+    /// The most of what that is on the way from the base to where each Gaussian is. A column that is everywhere just as stiff as what it
+    /// carries there asks for buckles under an eighth of Greenhill's load: stems are as stiff at their tips as at their feet.
+    pub from_base_m: Vec<f32>,
 }
 
 /// The automatic stiffness of an object.
@@ -48,6 +53,8 @@ pub struct YoungAuto {
     pub value_pa: f64,
     /// Of each Gaussian: `value_pa`, or more where a slender part needs it.
     pub local: Vec<f32>,
+    /// What it takes to stand firmly at each Gaussian's place and between that and the base, Pa, whatever the rest is.
+    pub needs_pa: Vec<f32>,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// What the user may like to know.
@@ -59,8 +66,9 @@ pub(super) fn stance(gaussians: &Gaussians, grid: &Grid, sections: &Sections) ->
     let total_m3 = sections.volume_m3();
     let mut whole_m = 0.0f64;
     let mut of_section = vec![0.0f64; sections.count()];
-    for cut in sections.cuts() {
-        let column = column_m(&cut);
+    let cuts = sections.cuts();
+    for cut in &cuts {
+        let column = column_m(cut);
         if cut.volume_m3 >= MAJOR_SHARE * total_m3 {
             whole_m = whole_m.max(column);
         }
@@ -68,8 +76,15 @@ pub(super) fn stance(gaussians: &Gaussians, grid: &Grid, sections: &Sections) ->
             of_section[section as usize] = column;
         }
     }
-    let local_m = gaussians.mean.iter().map(|&p| sections.at(grid, p).map_or(0.0, |s| of_section[s as usize] as f32)).collect();
-    Stance { whole_m, local_m }
+    let mut from_base = of_section.clone();
+    for &section in cuts.iter().rev().flat_map(|cut| &cut.sections) {
+        for &beyond in sections.beyond(section) {
+            from_base[beyond as usize] = from_base[beyond as usize].max(from_base[section as usize]);
+        }
+    }
+    let section: Vec<Option<u32>> = gaussians.mean.iter().map(|&p| sections.at(grid, p)).collect();
+    let at = |of_section: &[f64]| section.iter().map(|s| s.map_or(0.0, |s| of_section[s as usize] as f32)).collect();
+    Stance { whole_m, local_m: at(&of_section), from_base_m: at(&from_base) }
 }
 
 /// Chooses the stiffness of an object of this density; the spec's gravity is not asked.
@@ -79,7 +94,8 @@ pub fn young_auto(stance: &Stance, density_kg_m3: f64) -> YoungAuto {
     let value_pa = needed_pa.clamp(RANGE_PA.0, RANGE_PA.1);
     let needs: Vec<f64> = stance.local_m.iter().map(|&m| weight_n_m3 * f64::from(m)).collect();
     let local = needs.iter().map(|&need| if need > NOTABLE * value_pa { need.min(LOCAL_MOST_PA) as f32 } else { value_pa as f32 }).collect();
-    YoungAuto { value_pa, local, warnings: warnings(value_pa, needed_pa), notes: notes(value_pa, &needs) }
+    let needs_pa = stance.from_base_m.iter().map(|&m| (weight_n_m3 * f64::from(m)).min(LOCAL_MOST_PA) as f32).collect();
+    YoungAuto { value_pa, local, needs_pa, warnings: warnings(value_pa, needed_pa), notes: notes(value_pa, &needs) }
 }
 
 /// Lets go of threads that no stiffness that is chosen makes stand: they would droop or curl up, however
@@ -136,6 +152,6 @@ fn notes(value_pa: f64, needs: &[f64]) -> Vec<String> {
 }
 
 /// "694 kPa"
-fn pascals(value: f64) -> String {
+pub fn pascals(value: f64) -> String {
     if value >= 1e6 { format!("{:.1} MPa", value / 1e6) } else { format!("{:.0} kPa", value / 1e3) }
 }

@@ -21,6 +21,16 @@ pub struct Bound {
     pub index: Vec<u32>,
     /// K weights a Gaussian that add up to 1; zeros where it follows none.
     pub weight: Vec<f32>,
+    /// Gaussians of threads too thin to be matter, ascending, and where each thread is held, metres, world: they go and turn with
+    /// what is there, as if stiff.
+    pub hung: Vec<(u32, Vec3)>,
+}
+
+impl Bound {
+    /// Where the thread that a Gaussian belongs to is held.
+    pub(super) fn held_at(&self, gaussian: u32) -> Option<Vec3> {
+        self.hung.binary_search_by_key(&gaussian, |hung| hung.0).ok().map(|at| self.hung[at].1)
+    }
 }
 
 /// Binds each Gaussian to the K nearest particles of its own object, in the captured pose.
@@ -29,7 +39,7 @@ pub struct Bound {
 /// particles follows none. An object with fewer than K particles fills up with weight 0.
 pub fn bind(means: &[Vec3], object_of: &[u32], particles: &[Vec3], particle_object: &[u32], skin: &Skin) -> Bound {
     let k = skin.neighbours.clamp(1, 16) as usize;
-    let mut bound = Bound { neighbours: k as u32, index: vec![STATIC; means.len() * k], weight: vec![0.0; means.len() * k] };
+    let mut bound = Bound { neighbours: k as u32, index: vec![STATIC; means.len() * k], weight: vec![0.0; means.len() * k], hung: Vec::new() };
     for (object, tree) in trees(particles, particle_object) {
         let members: Vec<usize> = (0..means.len()).filter(|&g| object_of[g] == object).collect();
         let centres: Vec<Vec3> = members.iter().map(|&g| means[g]).collect();

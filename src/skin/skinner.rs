@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Version of what skinning computes; part of the keys of pictures.
-pub const VERSION: u32 = 6;
+pub const VERSION: u32 = 7;
 
 /// Threads of a workgroup.
 const GROUP_SIZE: u32 = 128;
@@ -42,7 +42,9 @@ pub(super) struct Immediates {
     pub origin: [f32; 3],
     pub count: u32,
     span_m: f32,
-    padding: [u32; 3],
+    /// Of the moving Gaussians, those from here on hang on a thread.
+    first_hung: u32,
+    padding: [u32; 2],
 }
 
 /// Moves the Gaussians of one scene. At rest what it writes equals `Splats::rest` bit for bit.
@@ -64,9 +66,15 @@ impl Skinner {
     /// Uploads the binding. `rest_particles` are the captured positions in the world, in the order
     /// of the motion that [`Skinner::record`] will read.
     pub fn new(gpu: &Gpu, splats: &Splats, bound: &Bound, rest_particles: &[Vec3], weights: Weights) -> Result<Skinner, GpuError> {
-        let packed = Packed::new(bound);
         let origin = centre(rest_particles);
-        let shared = Immediates { origin: origin.to_array(), count: 0, span_m: span_m(bound, rest_particles), padding: [0; 3] };
+        let packed = Packed::new(bound, origin);
+        let shared = Immediates {
+            origin: origin.to_array(),
+            count: 0,
+            span_m: span_m(bound, rest_particles),
+            first_hung: packed.first_hung(),
+            padding: [0; 2],
+        };
         let relative: Vec<[f32; 4]> = rest_particles.iter().map(|&p| (p - origin).extend(0.0).to_array()).collect();
         let deltas = gpu.storage::<[u32; 8]>("skin.deltas", rest_particles.len())?;
         let blend = gpu.kernel(&blend_source(packed.vectors, weights));
@@ -74,6 +82,7 @@ impl Skinner {
             moving: gpu.storage_from("skin.moving", &packed.moving)?,
             index: gpu.storage_from("skin.particle", &packed.index)?,
             weight: gpu.storage_from("skin.weight", &packed.weight)?,
+            held: gpu.storage_from("skin.held", if packed.held.is_empty() { &[[0.0; 4]] } else { &packed.held[..] })?,
         };
         let whole = gpu.storage_from("skin.whole", &[0.0f32])?;
         Ok(Skinner {
@@ -123,33 +132,38 @@ struct Uploaded {
     moving: wgpu::Buffer,
     index: wgpu::Buffer,
     weight: wgpu::Buffer,
+    held: wgpu::Buffer,
 }
 
 impl Uploaded {
     /// What the pass over Gaussians reads and writes; `parted` is of particles that are drawn themselves, or a single 0.
     fn bind(&self, gpu: &Gpu, blend: &Kernel, splats: &Splats, deltas: &wgpu::Buffer, parted: &wgpu::Buffer) -> wgpu::BindGroup {
-        gpu.bind(blend, &[&self.moving, &self.index, &self.weight, deltas, &splats.rest, parted, &splats.geometry])
+        gpu.bind(blend, &[&self.moving, &self.index, &self.weight, deltas, &splats.rest, parted, &self.held, &splats.geometry])
     }
 }
 
-/// The binding without the static Gaussians, in groups of four neighbours.
+/// The binding without the static Gaussians, in groups of four neighbours; those that hang on threads last.
 struct Packed {
     vectors: u32,
     moving: Vec<u32>,
     index: Vec<[u32; 4]>,
     weight: Vec<[f32; 4]>,
+    /// Where those of threads are held, from the origin.
+    held: Vec<[f32; 4]>,
 }
 
 impl Packed {
-    fn new(bound: &Bound) -> Packed {
+    fn new(bound: &Bound, origin: Vec3) -> Packed {
         let k = bound.neighbours.max(1) as usize;
         let vectors = k.div_ceil(4);
-        let mut packed = Packed { vectors: vectors as u32, moving: Vec::new(), index: Vec::new(), weight: Vec::new() };
-        for (g, (index, weight)) in bound.index.chunks_exact(k).zip(bound.weight.chunks_exact(k)).enumerate() {
-            if index[0] == STATIC {
-                continue;
-            }
-            packed.moving.push(g as u32);
+        let mut packed = Packed { vectors: vectors as u32, moving: Vec::new(), index: Vec::new(), weight: Vec::new(), held: Vec::new() };
+        let moving: Vec<u32> = (0u32..).zip(bound.index.chunks_exact(k)).filter(|(_, index)| index[0] != STATIC).map(|(g, _)| g).collect();
+        let (hung, free): (Vec<u32>, Vec<u32>) = moving.into_iter().partition(|&g| bound.held_at(g).is_some());
+        packed.held = hung.iter().filter_map(|&g| bound.held_at(g)).map(|at| (at - origin).extend(0.0).to_array()).collect();
+        packed.moving = [free, hung].concat();
+        for &g in &packed.moving {
+            let own = g as usize * k..(g as usize + 1) * k;
+            let (index, weight) = (&bound.index[own.clone()], &bound.weight[own]);
             for v in 0..vectors {
                 let slot = |s: usize| v * 4 + s;
                 packed.index.push(std::array::from_fn(|s| index.get(slot(s)).copied().unwrap_or(index[0])));
@@ -157,6 +171,10 @@ impl Packed {
             }
         }
         packed
+    }
+
+    fn first_hung(&self) -> u32 {
+        (self.moving.len() - self.held.len()) as u32
     }
 }
 
@@ -205,7 +223,7 @@ fn blend_source(vectors: u32, weights: Weights) -> KernelSource {
         entry: "main",
         parts: vec![AFFINE, ROTATION, BLEND],
         constants: [constants(), vec![("VECTORS", Constant::U32(vectors)), ("PAPER", Constant::Bool(weights == Weights::Paper))]].concat(),
-        bindings: [[Access::Read; 6].as_slice(), &[Access::Write]].concat(),
+        bindings: [[Access::Read; 7].as_slice(), &[Access::Write]].concat(),
         immediate_bytes: size_of::<Immediates>() as u32,
     }
 }

@@ -146,6 +146,32 @@ fn v27_rotations_and_affine_maps_are_exact_on_the_device() {
     }
 }
 
+/// A thread goes with what it hangs on, and turns with it; what that stretches by does not tear it, however long the thread.
+#[test]
+fn threads_turn_with_what_holds_them_and_keep_their_shape() {
+    let body = body();
+    let held = PLACE + 0.1;
+    let mut means = body.scene.mean.clone();
+    let hung: Vec<(u32, Vec3)> = (0..3000).filter(|g| g % 10 == 7).map(|g| (g, held)).collect();
+    hung.iter().for_each(|&(g, at)| means[g as usize] = at);
+    let skin = Skin { neighbours: 8, weights: Weights::Exact };
+    let bound = Bound { hung, ..bind(&means, &body.object, &body.particles, &vec![0; body.particles.len()], &skin) };
+    let quarter = Mat3::from_cols_array(&[0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+    let stretch = Mat3::from_diagonal(Vec3::new(2.0, 0.5, 1.5));
+    let motion = body.affine(quarter * stretch, Vec3::X);
+    let drawn = body.on_device(&bound, Weights::Exact, &motion);
+    let rest = body.rest();
+    for &(g, _) in &bound.hung {
+        let (drawn, rest) = (&drawn[g as usize], &rest[g as usize]);
+        let expected = quarter * (stretch * held) + Vec3::X + quarter * (Vec3::from_slice(rest) - held);
+        assert!((Vec3::from_slice(drawn) - expected).length() < 1e-5, "{} is not at {expected}", Vec3::from_slice(drawn));
+        let turned = quarter * covariance(rest) * quarter.transpose();
+        assert!((covariance(drawn) - turned).abs_diff_eq(Mat3::ZERO, 1e-8));
+    }
+    let twin = body.on_twin(&bound, Weights::Exact, &motion);
+    assert!(largest_difference(&drawn, &twin, 0..3) < 1e-5 && largest_difference(&drawn, &twin, 4..10) < 1e-7);
+}
+
 /// V27 on the twin, with any rotation, the motion in full precision.
 #[test]
 fn v27_any_rotation_is_exact() {

@@ -81,6 +81,9 @@ pub fn blend(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta],
     if index[0] == STATIC {
         return *rest;
     }
+    let centre = Vec3::from_slice(rest);
+    let held_at = bound.held_at(gaussian as u32).filter(|_| weights == Weights::Exact);
+    let root = held_at.unwrap_or(centre) - origin;
     let nearest = deltas[index[0] as usize];
     let weighed = |weight: &[f32]| {
         index.iter().zip(weight).fold(Delta::ZERO, |sum, (&i, &w)| {
@@ -91,7 +94,7 @@ pub fn blend(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta],
     let mut sum = weighed(weight);
     if weights == Weights::Exact
         && sum.is_finite()
-        && let Some(kept) = parted(rest, index, weight, deltas, frame)
+        && let Some(kept) = parted(root, index, weight, deltas, frame)
     {
         let total: f32 = kept.iter().sum();
         let part = weighed(&kept);
@@ -99,37 +102,43 @@ pub fn blend(rest: &[f32; 16], gaussian: usize, bound: &Bound, deltas: &[Delta],
     }
     let d = [sum, nearest].into_iter().find(|d| d.is_finite()).unwrap_or(Delta::ZERO);
     let mut record = *rest;
-    let centre = Vec3::from_slice(rest);
-    let moved = if weights == Weights::Paper { d.offset } else { d.offset + d.linear * (centre - origin) };
-    record[..3].copy_from_slice(&(centre + moved).to_array());
+    let mut moved = if weights == Weights::Paper { d.offset } else { d.carry(root) };
     if d.linear != Mat3::ZERO {
-        deform(&mut record, d, nearest, weights);
+        let lever = held_at.map(|_| centre - origin - root);
+        moved += deform(&mut record, d, nearest, weights, lever);
     }
+    record[..3].copy_from_slice(&(centre + moved).to_array());
     record
 }
 
 /// The weights that particles which stay near the nearest one keep; none where all stay.
-fn parted(rest: &[f32; 16], index: &[u32], weight: &[f32], deltas: &[Delta], frame: Frame) -> Option<Vec<f32>> {
-    let c = Vec3::from_slice(rest) - frame.origin;
+fn parted(c: Vec3, index: &[u32], weight: &[f32], deltas: &[Delta], frame: Frame) -> Option<Vec<f32>> {
     let there = deltas[index[0] as usize].carry(c);
     let spans = |i: u32| (deltas[i as usize].carry(c) - there).length() / frame.span_m;
     let parts = index.iter().zip(weight).any(|(&i, &w)| w > 0.0 && spans(i) > PART[0]);
     parts.then(|| index.iter().zip(weight).map(|(&i, w)| w * (1.0 - smoothstep(PART, spans(i)))).collect())
 }
 
-/// Turns and stretches a record's covariance and the frame of its spherical harmonics.
-fn deform(record: &mut [f32; 16], d: Delta, nearest: Delta, weights: Weights) {
+/// Turns and stretches a record's covariance and the frame of its spherical harmonics; what hangs on a thread only turns. How far
+/// that carries the end of its lever.
+fn deform(record: &mut [f32; 16], d: Delta, nearest: Delta, weights: Weights, lever: Option<Vec3>) -> Vec3 {
     let mut f = Mat3::IDENTITY + d.linear;
+    let mut carried = Vec3::ZERO;
     if weights == Weights::Exact {
         let candidates = [f, Mat3::IDENTITY + nearest.linear];
         f = candidates.into_iter().find(|f| f.is_finite() && f.determinant() >= SMALLEST_DETERMINANT).unwrap_or(Mat3::IDENTITY);
         let r = polar_rotation(f);
         f = limited(f, r);
+        if let Some(lever) = lever {
+            f = r;
+            carried = r * lever - lever;
+        }
         let turn = (Quat::from_mat3(&r) * Quat::from_slice(&record[12..])).normalize();
         turn.write_to_slice(&mut record[12..]);
     }
     let c = f * covariance_of(record) * f.transpose();
     record[4..10].copy_from_slice(&[c.x_axis.x, c.x_axis.y, c.x_axis.z, c.y_axis.y, c.y_axis.z, c.z_axis.z]);
+    carried
 }
 
 /// Of a record.

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use super::canonical::number;
 use super::error::{SpecError, SpecErrorKind, show};
-use super::{Auto, Material, path};
+use super::{Material, Young, path};
 
 /// Their names of what every solid has, and ours.
 const SOLID: [(&str, &str); 3] = [("E", "young_pa"), ("nu", "poisson"), ("rho", "density_kg_m3")];
@@ -224,7 +224,7 @@ pub(super) fn switch_kind(table: &mut Map<String, Value>, kind: &str) {
     let Some(Value::Object(fields)) = Material::of_kind(kind).and_then(|material| serde_json::to_value(material).ok()) else { return };
     table.retain(|key, _| fields.contains_key(key));
     // A stiffness that was left to the program is left to the kind.
-    if table.get("young_pa").is_some_and(|young| young == &json!(Auto::<f64>::Auto)) {
+    if table.get("young_pa").is_some_and(|young| young == &json!(Young::Auto)) {
         table.shift_remove("young_pa");
     }
 }

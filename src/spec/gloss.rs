@@ -15,6 +15,7 @@ struct Scale {
 
 const SCALES: &[Scale] = &[
     Scale { key: "young_pa", as_much: "stiff", more: "stiffer", less: "softer" },
+    Scale { key: "at_least", as_much: "stiff", more: "stiffer", less: "softer" },
     Scale { key: "density_kg_m3", as_much: "heavy", more: "heavier", less: "lighter" },
     Scale { key: "viscosity_pa_s", as_much: "thick", more: "thicker", less: "thinner" },
     Scale { key: "surface_tension_n_m", as_much: "strong a skin", more: "more surface tension", less: "less surface tension" },
@@ -92,7 +93,9 @@ fn special(change: &Change, before: &Value, after: &Value, from: &Spec, to: &Spe
     let auto = (before == "auto", after == "auto");
     let words = match (key, auto) {
         ("young_pa", (_, true)) => "stiffness chosen by the program".to_owned(),
+        ("young_pa", _) if after.is_object() => "firmer where its weight asks for it".to_owned(),
         ("young_pa", (true, _)) => "stiffness given".to_owned(),
+        ("young_pa", _) if before.is_object() => "stiffness given, also where its weight asks for more".to_owned(),
         ("duration_s", (_, true)) => "until it has settled".to_owned(),
         ("duration_s", (true, _)) => "length given".to_owned(),
         ("camera", (_, true)) => "the camera places itself".to_owned(),

@@ -30,7 +30,11 @@ fn preset(name: &str) -> Material {
 fn presets_and_kinds_are_read_by_name() {
     assert_eq!(material("\"jelly\""), preset("jelly"));
     let Material::Elastic(jelly) = preset("jelly") else { panic!("elastic") };
-    assert_eq!(material("{ preset = \"jelly\", poisson = 0.2 }"), Material::Elastic(Elastic { poisson: 0.2, ..jelly }));
+    assert_eq!(material("{ preset = \"jelly\", poisson = 0.2 }"), Material::Elastic(Elastic { poisson: 0.2, ..jelly.clone() }));
+    // It bears itself, unless its stiffness is given: that is obeyed.
+    assert_eq!(jelly.young_pa, Young::AtLeast(1e4));
+    assert_eq!(material("{ young_pa = { at_least = 2e4 } }").young_pa(), Some(Young::AtLeast(2e4)));
+    assert_eq!(material("{ preset = \"jelly\", young_pa = 1e4 }").young_pa(), Some(Young::Value(1e4)));
     for kind in Material::KINDS {
         assert_eq!(material(&format!("{{ kind = \"{kind}\" }}")), Material::of_kind(kind).unwrap());
         assert_eq!(Material::of_kind(kind).unwrap().kind(), kind);
@@ -51,7 +55,7 @@ fn presets_and_kinds_are_read_by_name() {
 
 #[test]
 fn the_names_of_genesis_are_converted_by_kind() {
-    let ours = Material::Elastic(Elastic { young_pa: Auto::Value(2e5), poisson: 0.25, density_kg_m3: 500.0, model: ElasticModel::NeoHookean });
+    let ours = Material::Elastic(Elastic { young_pa: Young::Value(2e5), poisson: 0.25, density_kg_m3: 500.0, model: ElasticModel::NeoHookean });
     for text in [
         "{ E = 2e5, nu = 0.25, rho = 500, model = \"neohooken\" }",
         "{ mu = 8e4, lam = 8e4, rho = 500, model = \"neo_hookean\" }",
@@ -78,7 +82,7 @@ fn the_names_of_genesis_are_converted_by_kind() {
     let Material::Rigid(rigid) = material("{ kind = \"rigid\", rho = 600, coup_friction = 0.1, coup_restitution = 0.2 }") else { panic!("rigid") };
     assert_eq!(rigid, Rigid { density_kg_m3: 600.0, friction: 0.1, restitution: 0.2 });
     let Material::Muscle(muscle) = material("{ kind = \"muscle\", E = 1e5, n_groups = 1, model = \"neohooken\" }") else { panic!("a muscle") };
-    assert_eq!(muscle.young_pa, Auto::Value(1e5));
+    assert_eq!(muscle.young_pa, Young::Value(1e5));
 }
 
 #[test]
@@ -167,7 +171,7 @@ fn parts_are_read_written_edited_and_compared_by_name() {
         ])
         .unwrap();
     let parts = &edited.objects[0].parts;
-    assert_eq!(parts[0].material.young_pa(), Some(Auto::Value(2e4)));
+    assert_eq!(parts[0].material.young_pa(), Some(Young::Value(2e4)));
     assert!(matches!(parts[1].region, Region::Box(_)));
     assert_eq!((parts[2].name.as_str(), &parts[2].material), ("rim", &preset("jelly")));
     let said: Vec<String> = spec.diff(&edited).iter().map(ToString::to_string).collect();
@@ -199,7 +203,7 @@ fn parts_are_read_written_edited_and_compared_by_name() {
 fn aliases_in_edits_replace_what_they_stand_for() {
     let mut notes = Vec::new();
     let edited = outline().apply_noted(&[Edit::set("object.vase.material.rho", 500), Edit::set("object.vase.material.mu", 8e4)], &mut notes).unwrap();
-    assert_eq!((edited.objects[0].material.density_kg_m3(), edited.objects[0].material.young_pa()), (500.0, Some(Auto::Value(208_000.0))));
+    assert_eq!((edited.objects[0].material.density_kg_m3(), edited.objects[0].material.young_pa()), (500.0, Some(Young::Value(208_000.0))));
     assert_eq!(notes.len(), 1);
     let back = edited.apply(&[Edit::remove("object.vase.material.rho")]).unwrap();
     assert_eq!(back.objects[0].material.density_kg_m3(), 1000.0);

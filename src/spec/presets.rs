@@ -1,6 +1,6 @@
 //! Values that have a name: kinds of stuff and kinds of gravity.
 
-use super::{Auto, Elastic, ElasticModel, Liquid, LiquidSolver, Material, Plastic, Rigid, Sand, Snow, Viscoplastic};
+use super::{Elastic, ElasticModel, Liquid, LiquidSolver, Material, Plastic, Rigid, Sand, Snow, Viscoplastic, Young};
 
 /// A stuff of everyday life.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub struct MaterialPreset {
 }
 
 const fn elastic(young_pa: f64, poisson: f64, density_kg_m3: f64) -> Material {
-    Material::Elastic(Elastic { young_pa: Auto::Value(young_pa), poisson, density_kg_m3, model: ElasticModel::Corotated })
+    Material::Elastic(Elastic { young_pa: Young::Value(young_pa), poisson, density_kg_m3, model: ElasticModel::Corotated })
 }
 
 const fn rigid(density_kg_m3: f64, friction: f64, restitution: f64) -> Material {
@@ -22,15 +22,15 @@ const fn rigid(density_kg_m3: f64, friction: f64, restitution: f64) -> Material 
 }
 
 const fn plastic(young_pa: f64, poisson: f64, density_kg_m3: f64, yield_stress_pa: f64) -> Material {
-    Material::Plastic(Plastic { young_pa: Auto::Value(young_pa), poisson, density_kg_m3, yield_stress_pa, hardening_pa: 0.0 })
+    Material::Plastic(Plastic { young_pa: Young::Value(young_pa), poisson, density_kg_m3, yield_stress_pa, hardening_pa: 0.0 })
 }
 
 const fn viscoplastic(density_kg_m3: f64, yield_stress_pa: f64, viscosity_pa_s: f64) -> Material {
-    Material::Viscoplastic(Viscoplastic { young_pa: Auto::Auto, poisson: 0.4, density_kg_m3, yield_stress_pa, viscosity_pa_s })
+    Material::Viscoplastic(Viscoplastic { young_pa: Young::Auto, poisson: 0.4, density_kg_m3, yield_stress_pa, viscosity_pa_s })
 }
 
 const fn sand(young_pa: f64, density_kg_m3: f64, friction_angle_deg: f64, cohesion_pa: f64) -> Material {
-    Material::Sand(Sand { young_pa: Auto::Value(young_pa), poisson: 0.3, density_kg_m3, friction_angle_deg, cohesion_pa })
+    Material::Sand(Sand { young_pa: Young::Value(young_pa), poisson: 0.3, density_kg_m3, friction_angle_deg, cohesion_pa })
 }
 
 const fn liquid(density_kg_m3: f64, viscosity_pa_s: f64, surface_tension_n_m: f64) -> Material {
@@ -49,7 +49,11 @@ pub const MATERIALS: &[MaterialPreset] = &[
         elastic(1.5e6, 0.45, 930.0),
         "natural rubber, 1.5 to 2.5 MPa and 920 to 930 kg/m3 (Ashby, Materials Selection in Mechanical Design, appendix A)",
     ),
-    preset("jelly", elastic(1e4, 0.45, 1030.0), "gelatine gel of about a tenth gelatine by weight: of the order of 10 kPa; nearly water"),
+    preset(
+        "jelly",
+        Material::Elastic(Elastic { young_pa: Young::AtLeast(1e4), poisson: 0.45, density_kg_m3: 1030.0, model: ElasticModel::Corotated }),
+        "gelatine gel of about a tenth gelatine by weight: of the order of 10 kPa; nearly water; firmer where it would not bear its own weight, as a cook makes it",
+    ),
     preset("foam", elastic(3e5, 0.25, 35.0), "flexible polymer foam of very low density, 0.3 to 1 MPa and 16 to 35 kg/m3 (Ashby, appendix A)"),
     preset("cloth-like", elastic(3e4, 0.1, 250.0), "chosen: a thick soft weave taken as a solid, so limp that it folds under its own weight"),
     preset(
@@ -88,7 +92,7 @@ pub const MATERIALS: &[MaterialPreset] = &[
     preset("dry_soil", sand(3.5e5, 1300.0, 30.0, 1e3), "loose dry loam, 1200 to 1400 kg/m3, 28 to 34 degrees, a cohesion of the order of 1 kPa"),
     preset(
         "snow",
-        Material::Snow(Snow { young_pa: Auto::Value(1.4e5), poisson: 0.2, density_kg_m3: 400.0, theta_c: 2.5e-2, theta_s: 7.5e-3, hardening: 10.0 }),
+        Material::Snow(Snow { young_pa: Young::Value(1.4e5), poisson: 0.2, density_kg_m3: 400.0, theta_c: 2.5e-2, theta_s: 7.5e-3, hardening: 10.0 }),
         "Stomakhin et al. 2013, the values that they start from",
     ),
 ];

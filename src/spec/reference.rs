@@ -71,6 +71,9 @@ To set `material.kind` keeps what the new kind shares with the old one, an autom
 `young_pa = \"auto\"` of what stands (elastic, muscle, plastic) is four times the self-buckling bound of its most slender part, 5e4 to 1e6 Pa; of what flows
 (viscoplastic, sand, snow) it is what lets its own weight compress it by a hundredth, 1e4 to 1e6 Pa.
 
+`young_pa = { at_least = 1e4 }`, jelly's, is that much, and more only where that would not bear what the place carries: then one and a half times the self-buckling bound, so that it
+sags and sways at a touch and holds. A number is obeyed as given, also where the thing then falls over.
+
 Parts are bonded: one body of several materials, without a gap or a contact between them. They are picked in the captured pose, by particles. Where two parts
 overlap the later one has what both claim; a part that holds no particle has no effect; both are said as warnings.
 
@@ -296,7 +299,8 @@ fn value(property: &'static Value) -> String {
         return "a list of tables".to_owned();
     }
     let forms = alternatives(resolved);
-    let with_tables = forms.iter().any(|form| resolve(form).get("properties").is_some());
+    // A number or `{ at_least = number }` is said in a line.
+    let with_tables = forms.iter().filter_map(|form| resolve(form)["properties"].as_object()).any(|table| !table.contains_key("at_least"));
     if resolved.get("properties").is_some() || with_tables { "see below".to_owned() } else { check::describe(property) }
 }
 

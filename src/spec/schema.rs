@@ -33,9 +33,10 @@ fn collect(schema: &Value, path: &str, paths: &mut Vec<String>) {
         return collect(items, &format!("{path}.NAME"), paths);
     }
     let forms = schema.get("oneOf").or_else(|| schema.get("anyOf")).and_then(Value::as_array);
+    let number = forms.into_iter().flatten().any(|form| form["type"] == "number");
     let tables = forms.into_iter().flatten().map(|form| reference(form).unwrap_or(form)).chain([schema]);
     let properties: Vec<_> = tables.filter_map(|table| table["properties"].as_object()).flatten().collect();
-    if properties.is_empty() {
+    if properties.is_empty() || number {
         paths.push(path.to_owned());
     }
     for (key, property) in properties {

@@ -268,7 +268,7 @@ fn edits_set_add_and_remove_by_name() {
         ])
         .unwrap();
     let Material::Elastic(elastic) = &edited.objects[0].material else { panic!("elastic") };
-    assert_eq!((elastic.young_pa, elastic.density_kg_m3), (Auto::Value(3e4), 500.0));
+    assert_eq!((elastic.young_pa, elastic.density_kg_m3), (Young::Value(3e4), 500.0));
     assert_eq!(edited.objects[0].velocity_m_s, [0.0, 0.0, 3.0]);
     assert_eq!(edited.objects[0].select, Select::Sphere(SphereShape { centre_m: [0.0; 3], radius_m: 1.0 }));
     assert_eq!(edited.events[1].name, "event2");

@@ -5,7 +5,7 @@ use super::engine::Engine;
 use super::run::Album;
 use super::{EngineError, RunOptions, still};
 use crate::render::Image;
-use crate::spec::{Auto, Spec};
+use crate::spec::{Spec, Young};
 use crate::world;
 use crate::{Frame, Sink, Stop, proxy};
 use std::path::Path;
@@ -38,7 +38,7 @@ impl Engine {
             let mut pieces = std::iter::once((format!("object.{}", object.name), &object.material)).chain(parts);
             let Some((_, material)) = pieces.find(|(owner, _)| path == format!("{owner}.material.young_pa")) else { continue };
             // What flows goes by the depth of its solid, which is known after a run.
-            if !material.stands() || material.young_pa() != Some(Auto::Auto) {
+            if !material.stands() || material.young_pa() != Some(Young::Auto) {
                 return Ok(None);
             }
             let density = object.material.density_kg_m3();

@@ -244,6 +244,7 @@ fn keep_solids(store: &Store, key: &str, solids: &[Solid]) -> Result<(), EngineE
         pack::write(&entry, &format!("{index}.volume"), &solid.volume_m3)?;
         pack::write(&entry, &format!("{index}.inner"), &inner)?;
         pack::write(&entry, &format!("{index}.stance"), &solid.stance.local_m)?;
+        pack::write(&entry, &format!("{index}.from_base"), &solid.stance.from_base_m)?;
         let (hung, hung_at): (Vec<u32>, Vec<[f32; 3]>) = solid.hung.iter().map(|&(g, at)| (g, at.to_array())).unzip();
         pack::write(&entry, &format!("{index}.hung"), &hung)?;
         pack::write(&entry, &format!("{index}.hung_at"), &hung_at)?;
@@ -267,11 +268,12 @@ fn read_solids(entry: &crate::store::Entry) -> Result<Option<Vec<Solid>>, Engine
     let Some(Ok(rows)) = entry.meta().get("solids").map(|v| serde_json::from_value::<Vec<SolidRow>>(v.clone())) else { return Ok(None) };
     let mut solids = Vec::new();
     for (index, row) in rows.into_iter().enumerate() {
-        let (Some(position), Some(volume_m3), Some(inner), Some(local_m), Some(hung), Some(hung_at)) = (
+        let (Some(position), Some(volume_m3), Some(inner), Some(local_m), Some(from_base_m), Some(hung), Some(hung_at)) = (
             pack::read::<[f32; 3]>(entry, &format!("{index}.position"))?,
             pack::read::<f32>(entry, &format!("{index}.volume"))?,
             pack::read::<u8>(entry, &format!("{index}.inner"))?,
             pack::read::<f32>(entry, &format!("{index}.stance"))?,
+            pack::read::<f32>(entry, &format!("{index}.from_base"))?,
             pack::read::<u32>(entry, &format!("{index}.hung"))?,
             pack::read::<[f32; 3]>(entry, &format!("{index}.hung_at"))?,
         ) else {
@@ -284,7 +286,7 @@ fn read_solids(entry: &crate::store::Entry) -> Result<Option<Vec<Solid>>, Engine
             fill_ratio: row.fill_ratio,
             spacing_m: row.spacing_m,
             volume_total_m3: row.volume_total_m3,
-            stance: Stance { whole_m: row.stance_m, local_m },
+            stance: Stance { whole_m: row.stance_m, local_m, from_base_m },
             hung: hung.into_iter().zip(hung_at.into_iter().map(Vec3::from)).collect(),
             warnings: row.warnings,
         });
@@ -292,18 +294,15 @@ fn read_solids(entry: &crate::store::Entry) -> Result<Option<Vec<Solid>>, Engine
     Ok(Some(solids))
 }
 
-/// Where each Gaussian is held: at its centre, or where the thread that it belongs to ends on the solid.
-fn held_at(prepared: &Prepared, solids: &[Solid]) -> Vec<Vec3> {
-    let mut held = prepared.gaussians.mean.clone();
-    for (index, solid) in solids.iter().enumerate() {
+/// The Gaussians of threads, ascending, and where the thread that each belongs to ends on the solid.
+fn hung(prepared: &Prepared, solids: &[Solid]) -> Vec<(u32, Vec3)> {
+    let mut hung = Vec::new();
+    for (index, solid) in solids.iter().enumerate().filter(|(_, solid)| !solid.hung.is_empty()) {
         let members = prepared.members(index as u32, false);
-        for &(member, at) in &solid.hung {
-            if let Some(&gaussian) = members.get(member as usize) {
-                held[gaussian as usize] = at;
-            }
-        }
+        hung.extend(solid.hung.iter().filter_map(|&(member, at)| Some((*members.get(member as usize)?, at))));
     }
-    held
+    hung.sort_unstable_by_key(|&(gaussian, _)| gaussian);
+    hung
 }
 
 /// Each Gaussian's particles and weights.
@@ -325,7 +324,8 @@ pub(super) fn bound(
         Some(entry) => match (pack::read::<u32>(&entry, "index")?, pack::read::<f32>(&entry, "weight")?, entry.meta().get("neighbours")) {
             (Some(index), Some(weight), Some(n)) => {
                 let neighbours = n.as_u64().unwrap_or(0) as u32;
-                (index.len() == expected * neighbours as usize && weight.len() == index.len()).then_some(Bound { neighbours, index, weight })
+                let whole = index.len() == expected * neighbours as usize && weight.len() == index.len();
+                whole.then(|| Bound { neighbours, index, weight, hung: hung(prepared, solids) })
             }
             _ => None,
         },
@@ -337,7 +337,10 @@ pub(super) fn bound(
         None => {
             let particles: Vec<Vec3> = solids.iter().flat_map(|s| s.position_m.iter().copied()).collect();
             let owner: Vec<u32> = solids.iter().enumerate().flat_map(|(i, s)| std::iter::repeat_n(i as u32, s.position_m.len())).collect();
-            let bound = skin::bind(&held_at(prepared, solids), &prepared.object_of, &particles, &owner, &spec.skin);
+            let hung = hung(prepared, solids);
+            let mut held = prepared.gaussians.mean.clone();
+            hung.iter().for_each(|&(gaussian, at)| held[gaussian as usize] = at);
+            let bound = Bound { hung, ..skin::bind(&held, &prepared.object_of, &particles, &owner, &spec.skin) };
             let entry = store.begin("bind", &keys.bind)?;
             pack::write(&entry, "index", &bound.index)?;
             pack::write(&entry, "weight", &bound.weight)?;

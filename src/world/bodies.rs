@@ -8,7 +8,7 @@ use super::region::{self, bounds};
 use super::stuff::{Stuff, Yardstick};
 use crate::proxy::{self, Solid, YoungAuto};
 use crate::solver::Particles;
-use crate::spec::{Auto, Material, Object, Rest, Spec};
+use crate::spec::{Material, Object, Rest, Spec, Young};
 use glam::Vec3;
 
 /// Particles of all objects, one object after another, and what was decided about them.
@@ -124,11 +124,14 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     let parts = object.parts.iter().map(|part| (format!("object.{}.part.{}", object.name, part.name), &part.material));
     let mut stuffs = Vec::new();
     for (path, material) in std::iter::once(own).chain(parts) {
-        stuffs.push(resolve(matter, &yard, material, &path));
+        stuffs.push(yard.stuff(material));
+        resolve(matter, material, &stuffs[stuffs.len() - 1], &path);
     }
     for (number, event) in spec.events.iter().enumerate().filter(|(_, event)| event.object == object.name) {
         if let Some(material) = &event.material {
-            matter.changes[number] = Some(resolve(matter, &yard, material, &format!("event.{}", event.name)));
+            let stuff = yard.stuff_throughout(material);
+            resolve(matter, material, &stuff, &format!("event.{}", event.name));
+            matter.changes[number] = Some(stuff);
         }
     }
     let standing = object.rest == Rest::AsCaptured;
@@ -138,7 +141,12 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     let count = solid.position_m.len();
     // Places that need more to stand keep their share over the rest when the whole is made softer or stiffer.
     let nearest = proxy::nearest(&members, &solid.position_m);
-    let share = |g: u32, material: &Material| if standing && material.stands() { auto.local[g as usize] / auto.value_pa as f32 } else { 1.0 };
+    let heavier = |stuff: &Stuff| (stuff.density_kg_m3 / object.material.density_kg_m3()) as f32;
+    let young_pa = |g: usize, material: &Material, stuff: &Stuff| match material.young_pa() {
+        Some(Young::AtLeast(least_pa)) => (least_pa as f32).max(proxy::BEARING as f32 * auto.needs_pa[g] * heavier(stuff)),
+        _ if standing && material.stands() => stuff.young_pa as f32 * (auto.local[g] / auto.value_pa as f32),
+        _ => stuff.young_pa as f32,
+    };
     let start = matter.bodies.mass_kg.len();
     let particles = &mut matter.particles;
     let first_row = particles.substances.len() as u16;
@@ -147,10 +155,12 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
         let stuff = &stuffs[usize::from(p)];
         let material = if p == 0 { &object.material } else { &object.parts[usize::from(p) - 1].material };
         particles.density_kg_m3.push(stuff.density_kg_m3 as f32);
-        particles.young_pa.push(stuff.young_pa as f32 * share(nearest[i], material));
+        particles.young_pa.push(young_pa(nearest[i] as usize, material, stuff));
         particles.poisson.push(stuff.poisson as f32);
         particles.substance.push(first_row + p);
     }
+    notes_of_bearing(matter, object, &piece, start);
+    let particles = &mut matter.particles;
     particles.position_m.extend(&solid.position_m);
     particles.velocity_m_s.extend(std::iter::repeat_n(Vec3::ZERO, count));
     particles.volume_m3.extend(&solid.volume_m3);
@@ -169,13 +179,29 @@ fn add(matter: &mut Matter, spec: &Spec, prepared: &Prepared, index: usize, soli
     matter.gaussians.push(prepared.members(index as u32, true).len());
 }
 
-/// A material as the solver takes it; an automatic modulus is written down.
-fn resolve(matter: &mut Matter, yard: &Yardstick, material: &Material, owner: &str) -> Stuff {
-    let stuff = yard.stuff(material);
-    if material.young_pa() == Some(Auto::Auto) {
+/// Writes an automatic modulus down.
+fn resolve(matter: &mut Matter, material: &Material, stuff: &Stuff, owner: &str) {
+    if material.young_pa() == Some(Young::Auto) {
         matter.young_auto.push((format!("{owner}.material.young_pa"), stuff.young_pa));
     }
-    stuff
+}
+
+/// Says how stiff the pieces of an object, whose particles begin at `start`, became that are only as stiff as asked for where that
+/// bears what they carry.
+fn notes_of_bearing(matter: &mut Matter, object: &Object, piece: &[u16], start: usize) {
+    let own = (object.name.clone(), &object.material);
+    let parts = object.parts.iter().map(|part| (format!("{}, {}", object.name, part.name), &part.material));
+    for (number, (name, material)) in std::iter::once(own).chain(parts).enumerate() {
+        let Some(Young::AtLeast(least_pa)) = material.young_pa() else { continue };
+        let young_pa = || piece.iter().zip(&matter.particles.young_pa[start..]).filter(|(p, _)| usize::from(**p) == number).map(|(_, &young)| young);
+        let stiffer = young_pa().filter(|&young| young > 1.05 * least_pa as f32).count();
+        if stiffer > 0 {
+            let most_pa = f64::from(young_pa().fold(0.0, f32::max));
+            let (least, most) = (proxy::pascals(least_pa), proxy::pascals(most_pa));
+            let share = 100.0 * stiffer as f64 / young_pa().count() as f64;
+            matter.notes.push(format!("{name}: is of {least}, and of up to {most} where that would not bear its weight ({share:.0} % of it)"));
+        }
+    }
 }
 
 /// Height of what has particles between two heights; of a single layer that of a particle.
@@ -188,10 +214,10 @@ fn warn_of_softness(matter: &mut Matter, object: &Object, auto: &YoungAuto, youn
     if !object.material.stands() {
         return;
     }
-    if object.material.young_pa() == Some(Auto::Auto) {
+    if object.material.young_pa() == Some(Young::Auto) {
         matter.warnings.extend(auto.warnings.iter().map(|w| format!("{}: {w}", object.name)));
         matter.notes.extend(auto.notes.iter().map(|n| format!("{}: {n}", object.name)));
-    } else if object.rest == Rest::AsCaptured && young_pa < auto.value_pa / 4.0 {
+    } else if matches!(object.material.young_pa(), Some(Young::Value(_))) && object.rest == Rest::AsCaptured && young_pa < auto.value_pa / 4.0 {
         matter.warnings.push(format!(
             "{}: with a stiffness of {:.3} kPa its most slender part cannot carry its own weight and will sag; it stands from about {:.0} kPa on, \
              \"stiffness {:.0} kPa\"",

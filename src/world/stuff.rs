@@ -1,7 +1,8 @@
 //! A material in the solver's terms: its law, its moduli, and what `"auto"` means for them.
 
+use crate::proxy::BEARING;
 use crate::solver::{Activation, Moduli, Substance, liquid_bulk_pa};
-use crate::spec::{self, Auto, LiquidSolver, Material};
+use crate::spec::{self, LiquidSolver, Material, Young};
 use glam::DVec3;
 
 /// Compression under its own weight that a flowing thing's automatic stiffness allows.
@@ -41,7 +42,7 @@ pub struct Yardstick {
 
 impl Yardstick {
     /// Automatic Young's modulus of a material in this object.
-    pub fn young_pa(&self, material: &Material) -> f64 {
+    fn automatic_pa(&self, material: &Material) -> f64 {
         let density = material.density_kg_m3();
         if material.stands() {
             return self.standing_pa * density / self.density_kg_m3;
@@ -59,16 +60,26 @@ impl Yardstick {
 
     /// A material of this object as the solver takes it.
     pub fn stuff(&self, material: &Material) -> Stuff {
-        // A body has no modulus.
-        let young_pa = match material {
-            Material::Rigid(_) => 0.0,
-            _ => material.young_pa().unwrap_or(Auto::Auto).unwrap_or(self.young_pa(material)),
+        let young_pa = match (material, material.young_pa()) {
+            // A body has no modulus.
+            (Material::Rigid(_), _) => 0.0,
+            (_, Some(Young::Value(young_pa) | Young::AtLeast(young_pa))) => young_pa,
+            _ => self.automatic_pa(material),
         };
         Stuff { substance: substance(material), young_pa, poisson: material.poisson().unwrap_or(0.0), density_kg_m3: material.density_kg_m3() }
     }
 }
 
 impl Yardstick {
+    /// What a material is where all of the object turns into it at once: the same everywhere, and enough to bear it.
+    pub fn stuff_throughout(&self, material: &Material) -> Stuff {
+        let mut stuff = self.stuff(material);
+        if let Some(Young::AtLeast(least_pa)) = material.young_pa() {
+            stuff.young_pa = least_pa.max(BEARING * self.automatic_pa(material));
+        }
+        stuff
+    }
+
     /// What some stuff of this object freezes to: itself where it keeps its shape, else an elastic solid.
     pub fn frozen(&self, stuff: &Stuff) -> Stuff {
         if stuff.substance.keeps_shape() {
@@ -144,14 +155,14 @@ mod tests {
     fn heavier_parts_are_stiffer_and_deeper_heaps_too() {
         let yard = |height_m| Yardstick { standing_pa: 2e5, density_kg_m3: 1000.0, height_m };
         let heavy = Material::Elastic(Elastic { density_kg_m3: 3000.0, ..Elastic::default() });
-        assert_eq!(yard(1.0).young_pa(&heavy), 6e5);
-        let sand = Material::Sand(Sand { young_pa: Auto::Auto, ..Sand::default() });
+        assert_eq!(yard(1.0).automatic_pa(&heavy), 6e5);
+        let sand = Material::Sand(Sand { young_pa: Young::Auto, ..Sand::default() });
         // A raindrop is held by its skin: 4 x 0.072 N/m / 2 mm / 0.01.
         let water = Material::Liquid(Liquid { surface_tension_n_m: 0.072, ..Liquid::default() });
-        assert!((yard(2e-3).young_pa(&water) - 14_400.0).abs() < 1.0);
-        assert!((yard(0.5).young_pa(&water) - 100.0 * 1000.0 * 2.0 * 9.81 * 0.5).abs() < 200.0);
+        assert!((yard(2e-3).automatic_pa(&water) - 14_400.0).abs() < 1.0);
+        assert!((yard(0.5).automatic_pa(&water) - 100.0 * 1000.0 * 2.0 * 9.81 * 0.5).abs() < 200.0);
         // 1600 kg/m3 x 9.81 m/s2 x 0.25 m / 0.01 = 392 kPa of bulk modulus, x 3 (1 - 0.6).
-        assert!((yard(0.25).young_pa(&sand) - 1.2 * 392_400.0).abs() < 1.0);
-        assert_eq!(yard(10.0).young_pa(&sand), 1e6);
+        assert!((yard(0.25).automatic_pa(&sand) - 1.2 * 392_400.0).abs() < 1.0);
+        assert_eq!(yard(10.0).automatic_pa(&sand), 1e6);
     }
 }

@@ -4,7 +4,7 @@
 use super::phrases::{Phrase, Reading};
 use super::sense::{Moment, Preposition, Sense, TurnWord, Verb};
 use super::tokens::Token;
-use phystalk::spec::{Auto, Material, Spec, presets};
+use phystalk::spec::{Material, Spec, Young, presets};
 
 /// All of these, in their order.
 pub fn understand(reading: &mut Reading, spec: &Spec) {
@@ -308,7 +308,7 @@ fn know_stuff(phrases: &mut [Phrase], tokens: &[Token], spec: &Spec) {
 
 /// Whether a material is a preset, or what more and less made of it: as heavy still, or as stiff.
 pub fn is_of(material: &Material, name: &str) -> bool {
-    let young = |m: &Material| if let Some(Auto::Value(young)) = m.young_pa() { Some(young) } else { None };
+    let young = |m: &Material| m.young_pa().and_then(Young::given_pa);
     presets::material(name).is_some_and(|preset| {
         let preset = &preset.material;
         material.kind() == preset.kind()

@@ -66,10 +66,11 @@ pub fn pressure(value: f64) -> String {
 
 /// "Young's modulus 10 kPa, Poisson's ratio 0.45, 1030 kg/m³"
 pub fn material(material: &phystalk::spec::Material) -> String {
-    use phystalk::spec::{Auto, Material};
+    use phystalk::spec::{Material, Young};
     let young = material.young_pa().map(|young| match young {
-        Auto::Value(young) => format!("Young's modulus {}", pressure(young)),
-        Auto::Auto => "automatic stiffness".to_owned(),
+        Young::Value(young) => format!("Young's modulus {}", pressure(young)),
+        Young::AtLeast(young) => format!("Young's modulus {}, more where its weight asks for it", pressure(young)),
+        Young::Auto => "automatic stiffness".to_owned(),
     });
     let own = match material {
         Material::Rigid(m) => vec![format!("friction {}", short(m.friction)), format!("gives back {} % of the speed", short(100.0 * m.restitution))],

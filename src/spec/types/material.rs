@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Activation;
-use crate::spec::auto::Auto;
+use super::{Activation, Young};
 use crate::spec::limits;
 
 /// What an object, or a part of one, is made of.
@@ -96,9 +95,10 @@ macro_rules! solid {
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields, default)]
         pub struct $name {
-            /// Young's modulus E; `"auto"` is enough to stand, or to bear its own weight where it flows.
+            /// Young's modulus E; `"auto"` is enough to stand, or to bear its own weight where it flows; `{ at_least = … }` is stiffer where
+            /// its weight asks for it, and only there.
             #[schemars(extend("minimum" = limits::YOUNG_PA.0, "maximum" = limits::YOUNG_PA.1))]
-            pub young_pa: Auto<f64>,
+            pub young_pa: Young,
             /// Poisson's ratio nu.
             #[schemars(range(min = 0.0, max = limits::POISSON))]
             pub poisson: f64,
@@ -118,7 +118,7 @@ macro_rules! solid {
 
 solid! {
     /// An elastic solid.
-    Elastic { Auto::Auto, 0.3, 1000.0;
+    Elastic { Young::Auto, 0.3, 1000.0;
         /// The energy.
         model: ElasticModel = ElasticModel::Corotated,
     }
@@ -126,7 +126,7 @@ solid! {
 
 solid! {
     /// An elastic solid with fibres that pull.
-    Muscle { Auto::Auto, 0.3, 1000.0;
+    Muscle { Young::Auto, 0.3, 1000.0;
         /// The energy of the elastic part.
         model: ElasticModel = ElasticModel::NeoHookean,
         /// Direction of the fibres in the captured pose; need not be of unit length.
@@ -139,7 +139,7 @@ solid! {
 
 solid! {
     /// A solid that yields by von Mises' criterion in logarithmic strain.
-    Plastic { Auto::Value(1e6), 0.3, 1000.0;
+    Plastic { Young::Value(1e6), 0.3, 1000.0;
         /// Yield stress in uniaxial tension.
         #[schemars(range(min = 0.0, max = limits::STRENGTH_PA))]
         yield_stress_pa: f64 = 1.2e4,
@@ -151,7 +151,7 @@ solid! {
 
 solid! {
     /// A Bingham solid: beyond the yield stress it flows at a rate that its viscosity sets.
-    Viscoplastic { Auto::Auto, 0.4, 1000.0;
+    Viscoplastic { Young::Auto, 0.4, 1000.0;
         /// Yield stress in uniaxial tension.
         #[schemars(range(min = 0.0, max = limits::STRENGTH_PA))]
         yield_stress_pa: f64 = 300.0,
@@ -163,7 +163,7 @@ solid! {
 
 solid! {
     /// Grains by Drucker and Prager. Their modulus is that of the heap, not that of a grain.
-    Sand { Auto::Value(3.5e5), 0.3, 1600.0;
+    Sand { Young::Value(3.5e5), 0.3, 1600.0;
         /// Angle of internal friction: about the slope at which a heap stands.
         #[schemars(range(min = limits::FRICTION_ANGLE_DEG.0, max = limits::FRICTION_ANGLE_DEG.1))]
         friction_angle_deg: f64 = 35.0,
@@ -175,7 +175,7 @@ solid! {
 
 solid! {
     /// Snow by Stomakhin et al. 2013.
-    Snow { Auto::Value(1.4e5), 0.2, 400.0;
+    Snow { Young::Value(1.4e5), 0.2, 400.0;
         /// Compression at which it begins to pack.
         #[schemars(range(min = limits::SNOW_STRETCH.0, max = limits::SNOW_STRETCH.1))]
         theta_c: f64 = 2.5e-2,
@@ -273,7 +273,7 @@ impl Material {
     }
     field! {
         /// Young's modulus of the kinds that have one.
-        young_pa young_pa_mut: Auto<f64> = young_pa of Elastic, Muscle, Plastic, Viscoplastic, Sand, Snow
+        young_pa young_pa_mut: Young = young_pa of Elastic, Muscle, Plastic, Viscoplastic, Sand, Snow
     }
     field! {
         /// Poisson's ratio of the kinds that have one.

@@ -10,6 +10,7 @@ mod object;
 mod scene;
 mod shape;
 mod view;
+mod young;
 
 pub use activation::*;
 pub use around::*;
@@ -21,6 +22,7 @@ pub use object::*;
 pub use scene::*;
 pub use shape::*;
 pub use view::*;
+pub use young::*;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

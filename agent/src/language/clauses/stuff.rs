@@ -8,7 +8,7 @@ use super::super::sense::{Preposition, Property, Sense};
 use super::adjust::{comparative, is_light};
 use super::parts::{self, Owner};
 use super::when::{self, When};
-use phystalk::spec::{Auto, Event, LiquidSolver, Material, ProxyKind, limits, presets};
+use phystalk::spec::{Event, LiquidSolver, Material, ProxyKind, Young, limits, presets};
 
 /// Stiffness taken for "softer" where the automatic one is not known: before the first run of a scene.
 pub const YOUNG_BEFORE_RUN_PA: f64 = 2e5;
@@ -24,7 +24,9 @@ pub fn stiffness(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result
         }
         let (before, note) = young_pa(draft, &owner)?;
         let after = say::tidy(before * scale.ratio);
-        *young_mut(draft, &owner)? = Auto::Value(after);
+        let young = young_mut(draft, &owner)?;
+        // What holds itself goes on doing so.
+        *young = if let Young::AtLeast(_) = young { Young::AtLeast(after) } else { Young::Value(after) };
         let words = comparative(owner.said, scale, "stiffer", "softer");
         draft.gloss.push(format!("{words}: Young's modulus {}{note} to {}", say::pressure(before), say::pressure(after)));
     }
@@ -48,7 +50,7 @@ fn part_name(draft: &Draft, owner: &Owner) -> Option<String> {
 }
 
 /// Its Young's modulus, where its material has one.
-fn young_mut<'a>(draft: &'a mut Draft, owner: &Owner) -> Result<&'a mut Auto<f64>, Refusal> {
+fn young_mut<'a>(draft: &'a mut Draft, owner: &Owner) -> Result<&'a mut Young, Refusal> {
     let material = draft.stuff(owner);
     let refusal = format!("{} is {}: it has no stiffness; \"make it of rubber\" gives it one", owner.said, material.kind());
     material.young_pa_mut().ok_or(refusal)
@@ -59,8 +61,9 @@ fn young_pa(draft: &mut Draft, owner: &Owner) -> Result<(f64, &'static str), Ref
     // A part that is new has what the whole has.
     let paths = [draft.stuff_path(owner), format!("object.{}.material", draft.name(owner.object))];
     Ok(match *young_mut(draft, owner)? {
-        Auto::Value(value) => (value, ""),
-        Auto::Auto => match paths.iter().find_map(|path| draft.resolved(&format!("{path}.young_pa"))) {
+        Young::Value(value) => (value, ""),
+        Young::AtLeast(value) => (value, " where that bears its weight"),
+        Young::Auto => match paths.iter().find_map(|path| draft.resolved(&format!("{path}.young_pa"))) {
             Some(value) => (value, " (automatic until now)"),
             None => (YOUNG_BEFORE_RUN_PA, " (taken for the automatic one, which is known after a run)"),
         },
@@ -97,7 +100,7 @@ pub fn set_density(clause: &mut Clause, draft: &mut Draft, density_kg_m3: f64) -
 /// A stiffness by its number.
 pub fn set_young(clause: &mut Clause, draft: &mut Draft, young_pa: f64) -> Result<(), Refusal> {
     for owner in parts::owners(clause, draft)? {
-        *young_mut(draft, &owner)? = Auto::Value(say::tidy(young_pa));
+        *young_mut(draft, &owner)? = Young::Value(say::tidy(young_pa));
         draft.gloss.push(format!("{} has a Young's modulus of {}", owner.said, say::pressure(young_pa)));
     }
     Ok(())
@@ -341,9 +344,9 @@ fn resemble(draft: &mut Draft, owner: &Owner, name: &str, preset: &Material, sca
         draft.gloss.push(format!("{} has {share}the density of {name}: {} kg/m³", owner.said, say::short(density)));
         return Ok(());
     }
-    let Some(Auto::Value(young)) = preset.young_pa() else { return Err(format!("{name} has no stiffness of its own")) };
+    let Some(young) = preset.young_pa().and_then(Young::given_pa) else { return Err(format!("{name} has no stiffness of its own")) };
     let young = say::tidy(young * ratio);
-    *young_mut(draft, owner)? = Auto::Value(young);
+    *young_mut(draft, owner)? = Young::Value(young);
     draft.gloss.push(format!("{} has {share}the stiffness of {name}: Young's modulus {}", owner.said, say::pressure(young)));
     Ok(())
 }

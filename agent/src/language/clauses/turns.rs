@@ -5,7 +5,7 @@ use super::super::draft::{Draft, Refusal};
 use super::super::say;
 use super::super::sense::{Field, Sense, TurnWord, Verb};
 use glam::DVec3;
-use phystalk::spec::{Acceleration, Auto, Event, Force, Object, Spec};
+use phystalk::spec::{Acceleration, Auto, Event, Force, Object, Spec, Young};
 
 const NOTHING: &str = "there is no turn before this one that it could speak of";
 
@@ -191,15 +191,14 @@ fn object(draft: &mut Draft, index: usize, now: &Object, was: &Object, how: Foll
     let thing = draft.object(index);
     (thing.velocity_m_s, thing.spin_rad_s, thing.offset_m, thing.rotate_deg) = (velocity, spin, offset, rotate);
     let path = format!("object.{name}.material.young_pa");
-    if let (Some(young_was), Some(Auto::Value(is))) = (was.material.young_pa(), now.material.young_pa()) {
-        let was = match young_was {
-            Auto::Value(value) => value,
-            Auto::Auto => draft.resolved(&path).unwrap_or(is),
-        };
+    if let (Some(young_was), Some(young_is)) = (was.material.young_pa(), now.material.young_pa())
+        && let Some(is) = young_is.given_pa()
+    {
+        let was = young_was.given_pa().or_else(|| draft.resolved(&path)).unwrap_or(is);
         let mut young = is;
         scalar((was, is), how, &mut young, |v| format!("Young's modulus of {name} {}", say::pressure(v)), said);
         if let Some(target) = draft.material(index).young_pa_mut() {
-            *target = Auto::Value(young);
+            *target = if let Young::AtLeast(_) = young_is { Young::AtLeast(young) } else { Young::Value(young) };
         }
     }
     let (was, is) = (was.material.density_kg_m3(), now.material.density_kg_m3());
