@@ -28,6 +28,11 @@ fn stirred(word: u32) -> u32 {
     return h ^ (h >> 16u);
 }
 
+/// 0 to 1.
+fn chance(word: u32) -> f32 {
+    return f32(word >> 8u) / 16777216.0;
+}
+
 fn key_of(cell: vec3<i32>) -> u32 {
     let c = bitcast<vec3<u32>>(cell);
     return stirred(c.x ^ stirred(c.y ^ stirred(c.z))) & params.mask;

@@ -162,10 +162,14 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
         opacity *= 1.0 - CLEAR * max(1.0 - seen.thickness, 0.0);
     }
     if kind == 1u {
-        // Grains stay round and do not mix. Each is a little lighter or darker than the next.
-        x = own.xyz;
-        c = mat3x3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0) * (GRAIN * GRAIN * seen.full * seen.full * radius_m * radius_m);
-        colour = mine * (1.0 + TONE * (f32(stirred(order[k]) >> 8u) / 8388608.0 - 1.0));
+        // Grains stay round and do not mix. Each is a little lighter or darker, larger or smaller than the next, and none lies on a lattice.
+        let i = order[k];
+        let size = mix(GRAINS_LOW, GRAINS_HIGH, chance(stirred(i + 0x9e3779b9u)));
+        let astray = vec3(chance(stirred(3u * i)), chance(stirred(3u * i + 1u)), chance(stirred(3u * i + 2u))) * 2.0 - 1.0;
+        x = own.xyz + astray * (ASTRAY * own.w * state.x);
+        let r = GRAIN * size * seen.full * radius_m;
+        c = mat3x3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0) * (r * r);
+        colour = mine * (1.0 + TONE * (2.0 * chance(stirred(i)) - 1.0));
         gloss = 0.0;
     }
     geometry[4u * g] = vec4(x, opacity);

@@ -2,6 +2,7 @@
 //! themselves: a Gaussian each, of the particle's volume, shaped by how its neighbours lie, coloured by the captured
 //! Gaussians that were nearest to it and, where it flows, by what it is stirred into.
 
+mod dye;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -62,6 +63,10 @@ pub const EVEN: f32 = 0.8;
 pub const THIN: [f32; 2] = [0.08, 0.25];
 /// Grains differ in tone by this share at most.
 pub const TONE: f32 = 0.14;
+/// And in size: the least and the largest over the mean one.
+pub const GRAINS: [f32; 2] = [0.6, 1.25];
+/// A grain lies so far at most from its particle along each axis, in sizes: particles begin on a lattice, grains do not.
+pub const ASTRAY: f32 = 0.35;
 /// Weight of its own colour among those of its neighbours that a particle is stirred into, by its volume 1.
 pub const OWN_COLOUR: f32 = 0.3;
 /// How much clearer a liquid is where it is thin: share of its opacity that it would lose where it is no more.
@@ -94,6 +99,8 @@ pub struct Filling {
     pub rest_m: Vec<Vec3>,
     /// Colour of each, display-referred, from all sides alike, and its size in metres.
     pub tint: Vec<[f32; 4]>,
+    /// What each adds to the colour of what it flows with: that of its surroundings.
+    pub dye: Vec<[f32; 4]>,
     /// [`BESIDE`] nearest particles of each of the same object; itself where there are fewer.
     pub beside: Vec<u32>,
     /// Distance between particles where they fill the room, metres.
@@ -104,7 +111,8 @@ impl Filling {
     /// Of particles in the captured pose, with their volumes and the objects they belong to.
     pub fn new(gaussians: &Gaussians, object_of: &[u32], rest_m: &[Vec3], volume_m3: &[f32], object: &[u32]) -> Filling {
         let spacing_m = spacing_m(volume_m3);
-        let mut filling = Filling { rest_m: rest_m.to_vec(), tint: vec![[0.0; 4]; rest_m.len()], beside: Vec::new(), spacing_m };
+        let mut filling =
+            Filling { rest_m: rest_m.to_vec(), tint: vec![[0.0; 4]; rest_m.len()], dye: vec![[0.0; 4]; rest_m.len()], beside: Vec::new(), spacing_m };
         filling.beside = (0..rest_m.len() as u32).flat_map(|i| std::iter::repeat_n(i, BESIDE as usize)).collect();
         let mut own: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         (0..rest_m.len()).for_each(|i| own.entry(object[i]).or_default().push(i));
@@ -112,6 +120,8 @@ impl Filling {
             let seen = (0..gaussians.len()).filter(|&g| object_of[g] == object).map(|g| (gaussians.mean[g], g as u32));
             filling.watch(&own);
             filling.colour(&own, Tree::new(seen.collect()), gaussians);
+            let dye = dye::mix(&filling, &own);
+            own.iter().zip(dye).for_each(|(&i, colour)| filling.dye[i] = colour.extend(0.0).to_array());
         }
         for (tint, volume) in filling.tint.iter_mut().zip(volume_m3) {
             tint[3] = volume.max(0.0).cbrt().clamp(0.4 * spacing_m, 1.5 * spacing_m);
@@ -175,6 +185,7 @@ pub(super) struct Body {
     spans: wgpu::Buffer,
     sorted: wgpu::Buffer,
     tint: wgpu::Buffer,
+    dye: wgpu::Buffer,
     immediates: Immediates,
 }
 
@@ -208,6 +219,7 @@ impl Body {
             spans,
             sorted,
             tint: gpu.storage_from("skin.tint", &filling.tint)?,
+            dye: gpu.storage_from("skin.dye", &filling.dye)?,
             immediates: Immediates {
                 origin: origin.to_array(),
                 count,
@@ -229,7 +241,7 @@ impl Body {
         run(recording, &self.place, &place);
         recording.extend(&self.sort);
         recording.clear(&self.spans);
-        let order = [&keys[self.to], &values[self.to], motion, &self.tint, &self.parted, &self.spans, &self.sorted];
+        let order = [&keys[self.to], &values[self.to], motion, &self.tint, &self.dye, &self.parted, &self.spans, &self.sorted];
         let order = gpu.bind(&self.order, &order);
         run(recording, &self.order, &order);
         run(recording, &self.stir, &self.stir_bindings);
@@ -256,7 +268,7 @@ pub(super) fn sources() -> [KernelSource; 4] {
     };
     [
         pass("skin.body_place", &[AFFINE, part!("body_place")], vec![Read, Read, Read, Write, Write, Write]),
-        pass("skin.body_order", &[AFFINE, part!("body_order")], vec![Read, Read, Read, Read, Read, Write, Write]),
+        pass("skin.body_order", &[AFFINE, part!("body_order")], vec![Read, Read, Read, Read, Read, Read, Write, Write]),
         pass("skin.body_stir", &[part!("body_stir")], vec![Read, Read, Read, Write]),
         pass("skin.body_shape", &[ROTATION, part!("principal"), part!("body_shape")], vec![Read, Read, Read, Read, Read, Write, Write]),
     ]
@@ -294,6 +306,9 @@ fn constants() -> Vec<(&'static str, Constant)> {
         ("CLEAR", CLEAR),
         ("SH_FIRST", SH_FIRST),
         ("TONE", TONE),
+        ("GRAINS_LOW", GRAINS[0]),
+        ("GRAINS_HIGH", GRAINS[1]),
+        ("ASTRAY", ASTRAY),
         ("GLOSS_PASTE", GLOSS[0]),
         ("GLOSS_LIQUID", GLOSS[1]),
     ];

@@ -1,7 +1,7 @@
 //! What the rule promises, of its twin; the device against the twin is in `skin::tests`.
 
 use super::twin::{Drawn, drawn, principal};
-use super::{BESIDE, FLAT, Filling, GRAIN, OPACITY, RADIUS, SH_FIRST, TONE};
+use super::{ASTRAY, BESIDE, FLAT, Filling, GRAIN, GRAINS, OPACITY, RADIUS, SH_FIRST, TONE};
 use crate::scene::Gaussians;
 use glam::{Mat3, Vec3};
 
@@ -38,6 +38,7 @@ fn poured(places: &[Vec3], flow: u32) -> Vec<Drawn> {
         let tone = [DARK, BRIGHT][i % 2];
         *tint = [tone, tone, tone, SIZE_M];
     }
+    filling.dye = filling.tint.clone();
     filling.rest_m.iter_mut().for_each(|p| *p = Vec3::ZERO);
     let far: Vec<u32> = (0..places.len()).flat_map(|i| [((i + places.len() / 2) % places.len()) as u32; BESIDE as usize]).collect();
     filling.beside = far;
@@ -125,7 +126,9 @@ fn grains_stay_round_and_themselves() {
     let all = poured(&lattice([7, 7, 7], SIZE_M), 1);
     for (i, grain) in all.iter().enumerate() {
         let ([a, _, c], _) = axes(grain);
-        assert!((a - GRAIN).abs() < 1e-3 && (c - GRAIN).abs() < 1e-3);
+        assert!((a / c - 1.0).abs() < 1e-3 && (GRAINS[0] - 1e-3..GRAINS[1] + 1e-3).contains(&(a / GRAIN)), "{a} {c}");
+        let astray = Vec3::from_slice(&grain.0) - lattice([7, 7, 7], SIZE_M)[i];
+        assert!(astray.abs().max_element() <= ASTRAY * SIZE_M + 1e-6, "{astray}");
         let tone = (grain.1.x * SH_FIRST + 0.5) / [DARK, BRIGHT][i % 2];
         assert!(grain.0[11] == 1.0 && (tone - 1.0).abs() <= TONE + 1e-4, "a grain keeps its colour, but for a tone, and does not shine: {tone}");
     }

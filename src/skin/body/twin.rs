@@ -29,13 +29,18 @@ fn weight(from: Vec3, size_m: f32, reach_m: f32) -> f32 {
     (1.0 - (from / reach_m).length_squared()).max(0.0).powi(3) * (size_m / reach_m).powi(3)
 }
 
+/// The colour that a particle brings along.
+fn brought(filling: &Filling, flow: u32, i: usize) -> Vec3 {
+    Vec3::from_slice(if flow > 1 { &filling.dye[i] } else { &filling.tint[i] })
+}
+
 /// Pass `skin.body_stir`: the mean light of what a particle has come to.
 pub fn stirred_light(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Vec3 {
     let reach_m = REACH * filling.spacing_m;
     let (mut light, mut total) = (Vec3::ZERO, 0.0);
     for (j, &x) in places.iter().enumerate().filter(|(j, _)| flow[*j] > 0) {
         let w = weight(x - places[i], filling.tint[j][3], reach_m) * if j == i { OWN_COLOUR } else { 1.0 };
-        light += Vec3::from_slice(&filling.tint[j]).powf(2.0) * w;
+        light += brought(filling, flow[j], j).powf(2.0) * w;
         total += w;
     }
     light / total
@@ -132,12 +137,16 @@ pub fn drawn(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Opti
     }
     let look = look(filling, places, flow, i);
     let radius_m = RADIUS * filling.tint[i][3] * mix(YOUNG, 1.0, parted);
-    let mine = Vec3::from_slice(&filling.tint[i]);
+    let mine = brought(filling, flow[i], i);
     let mut opacity = OPACITY * smoothstep([0.0, SEEN], parted);
     let (x, c, colour, gloss) = match flow[i] {
         1 => {
-            let tone = 1.0 + TONE * ((stirred(i as u32) >> 8) as f32 / 8_388_608.0 - 1.0);
-            (places[i], Mat3::IDENTITY * (GRAIN * look.full * radius_m).powi(2), mine * tone, 0.0)
+            let word = i as u32;
+            let tone = 1.0 + TONE * (2.0 * chance(word) - 1.0);
+            let size = mix(GRAINS[0], GRAINS[1], chance(word.wrapping_add(0x9e37_79b9)));
+            let astray = Vec3::new(chance(3 * word), chance(3 * word + 1), chance(3 * word + 2)) * 2.0 - 1.0;
+            let x = places[i] + astray * (ASTRAY * filling.tint[i][3] * parted);
+            (x, Mat3::IDENTITY * (GRAIN * size * look.full * radius_m).powi(2), mine * tone, 0.0)
         }
         flow => {
             opacity *= if flow == 3 { 1.0 - CLEAR * (1.0 - look.thickness).max(0.0) } else { 1.0 };
@@ -147,6 +156,11 @@ pub fn drawn(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Opti
     let (a, b, d, n) = (c.x_axis, c.y_axis, c.z_axis, look.normal);
     let record = [x.x, x.y, x.z, opacity, a.x, a.y, a.z, b.y, b.z, d.z, 1.0, 1.0 + gloss, n.x, n.y, n.z, 0.0];
     Some((record, (colour - 0.5) / SH_FIRST))
+}
+
+/// 0 to 1, of a particle.
+fn chance(word: u32) -> f32 {
+    (stirred(word) >> 8) as f32 / 16_777_216.0
 }
 
 fn stirred(word: u32) -> u32 {
