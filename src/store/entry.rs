@@ -13,6 +13,8 @@ use super::StoreError;
 
 /// Lists an entry's blobs; written last.
 pub(super) const MANIFEST: &str = "entry.json";
+/// BLAKE3 of that list.
+pub(super) const SEAL: &str = "entry.blake3";
 /// Locked while an entry is in use; its time is that of the last use.
 pub(super) const USED: &str = "used";
 
@@ -39,22 +41,45 @@ pub struct Entry {
     _used: File,
 }
 
+impl Manifest {
+    /// Writes it into an entry's folder.
+    pub(super) fn write(&self, folder: &Path) -> Result<(), StoreError> {
+        let path = folder.join(MANIFEST);
+        let bytes = serde_json::to_vec(self).map_err(|error| StoreError::damaged(&path, error))?;
+        let seal = blake3::hash(&bytes).to_hex();
+        // The list makes the entry: it comes last.
+        for (name, bytes) in [(SEAL, seal.as_bytes()), (MANIFEST, &bytes)] {
+            let path = folder.join(name);
+            super::write_atomic(&path, bytes).map_err(StoreError::io("written", &path))?;
+        }
+        Ok(())
+    }
+
+    /// Reads it from an entry's folder; none where the entry was evicted meanwhile.
+    fn read(folder: &Path) -> Result<Option<Manifest>, StoreError> {
+        let path = folder.join(MANIFEST);
+        let read = |path: &Path| match fs::read(path) {
+            Ok(bytes) => Ok(Some(bytes)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound && !folder.exists() => Ok(None),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Err(StoreError::damaged(path, "it is missing")),
+            Err(error) => Err(StoreError::io("read", path)(error)),
+        };
+        let (Some(bytes), Some(seal)) = (read(&path)?, read(&folder.join(SEAL))?) else { return Ok(None) };
+        if blake3::hash(&bytes).to_hex().as_bytes() != seal {
+            return Err(StoreError::damaged(&path, "its checksum differs"));
+        }
+        let manifest = serde_json::from_value(super::parse(&path, &bytes)?);
+        manifest.map(Some).map_err(|error| StoreError::damaged(&path, error))
+    }
+}
+
 impl Entry {
-    /// Opens a finished entry, none where there is none; sizes are compared, contents are not.
+    /// Opens a finished entry, none where there is none; sizes are compared, and the checksum of their list, contents are not.
     pub(super) fn open_at(path: &Path) -> Result<Option<Entry>, StoreError> {
         let Some(used) = use_entry(path)? else { return Ok(None) };
-        let manifest_path = path.join(MANIFEST);
-        let bytes = match fs::read(&manifest_path) {
-            Ok(bytes) => bytes,
-            // Evicted between the two looks.
-            Err(error) if error.kind() == io::ErrorKind::NotFound && !path.exists() => return Ok(None),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(StoreError::damaged(&manifest_path, "it is missing")),
-            Err(error) => return Err(StoreError::io("read", &manifest_path)(error)),
-        };
-        let manifest: Manifest =
-            serde_json::from_value(super::parse(&manifest_path, &bytes)?).map_err(|error| StoreError::damaged(&manifest_path, error))?;
+        let Some(manifest) = Manifest::read(path)? else { return Ok(None) };
         for (name, blob) in &manifest.blobs {
-            let file = path.join(super::checked(name).map_err(|error| StoreError::damaged(&manifest_path, error))?);
+            let file = path.join(super::checked(name).map_err(|error| StoreError::damaged(&path.join(MANIFEST), error))?);
             match fs::metadata(&file) {
                 Ok(found) if found.len() == blob.bytes => {}
                 Ok(found) => return Err(StoreError::damaged(&file, format!("{} bytes instead of {}", found.len(), blob.bytes))),
@@ -98,6 +123,11 @@ impl Entry {
         let (path, blob) = self.blob(name)?;
         let bytes = fs::read(&path).map_err(StoreError::io("read", &path))?;
         if blake3::hash(&bytes).to_hex().as_str() == blob.blake3 { Ok(bytes) } else { Err(give_up(&path)) }
+    }
+
+    /// Whether it has all of some blobs, byte for byte.
+    pub(super) fn holds(&self, blobs: &BTreeMap<String, Blob>) -> bool {
+        blobs.iter().all(|(name, blob)| self.manifest.blobs.get(name) == Some(blob))
     }
 
     /// Where a blob lies, for programs that need a file. Not to be written.

@@ -87,16 +87,21 @@ impl Store {
     }
 
     /// Takes an entry away at once, if it is there; whoever reads it reads on where the system can.
-    pub(super) fn discard(&self, _: &Guard, path: &Path) -> Result<(), StoreError> {
+    pub(super) fn discard(&self, guard: &Guard, path: &Path) -> Result<(), StoreError> {
+        self.take_out(guard, path)?.map_or(Ok(()), |gone| remove_folder(&gone))
+    }
+
+    /// Puts an entry out of the way, if it is there: the folder that is to be removed.
+    pub(super) fn take_out(&self, _: &Guard, path: &Path) -> Result<Option<PathBuf>, StoreError> {
         if !path.exists() {
-            return Ok(());
+            return Ok(None);
         }
         let tmp = self.dir().join("tmp");
         fs::create_dir_all(&tmp).map_err(StoreError::io("made", &tmp))?;
         // The rename replaces an empty folder: the entry goes as a whole, its removal may take time.
-        let folder = writer::fresh_folder(&tmp)?.join("gone");
-        fs::rename(path, &folder).map_err(StoreError::io("removed", path))?;
-        remove_folder(folder.parent().unwrap_or(&folder))
+        let folder = writer::fresh_folder(&tmp)?;
+        fs::rename(path, folder.join("gone")).map_err(StoreError::io("removed", path))?;
+        Ok(Some(folder))
     }
 
     fn discard_unused(&self, guard: &Guard, path: &Path) -> Result<bool, StoreError> {
@@ -128,12 +133,18 @@ impl Store {
         Ok(found)
     }
 
+    /// Names of entries that are kept from eviction. A list that cannot be read keeps none: it is taken away, and that is said.
     fn pinned(&self) -> Result<BTreeSet<String>, StoreError> {
         let mut pinned = BTreeSet::new();
         for path in children(&self.dir().join("pins"))? {
-            let bytes = fs::read(&path).map_err(StoreError::io("read", &path))?;
-            let names: Vec<String> = serde_json::from_slice(&bytes).map_err(|error| StoreError::damaged(&path, error))?;
-            pinned.extend(names);
+            let names = fs::read(&path).map_err(|e| e.to_string()).and_then(|bytes| serde_json::from_slice(&bytes).map_err(|e| e.to_string()));
+            match names {
+                Ok(names) => pinned.extend::<Vec<String>>(names),
+                Err(why) => {
+                    self.tell_damage(&format!("{}; what it kept from eviction may go", StoreError::damaged(&path, why)));
+                    remove_folder(&path)?;
+                }
+            }
         }
         Ok(pinned)
     }
@@ -163,7 +174,7 @@ fn is_used(path: &Path) -> Result<bool, StoreError> {
     }
 }
 
-fn remove_folder(path: &Path) -> Result<(), StoreError> {
+pub(super) fn remove_folder(path: &Path) -> Result<(), StoreError> {
     let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
     match removed {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(StoreError::io("removed", path)(error)),

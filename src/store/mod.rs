@@ -4,7 +4,8 @@
 //! .phystalk/
 //!   format               version of this layout
 //!   lock                 held for one operation
-//!   cache/STAGE/KEY/     a finished entry: its blobs, entry.json (sizes, checksums, meta), used
+//!   cache/STAGE/KEY/     a finished entry: its blobs, entry.json (sizes, checksums, meta) with its
+//!                        own in entry.blake3, used
 //!   pins/NAME.json       entries that eviction leaves alone
 //!   tmp/                 entries in the making or on their way out; swept at start
 //! ```
@@ -110,11 +111,15 @@ impl Store {
         match Entry::open_at(&path) {
             Err(damage @ StoreError::Damaged { .. }) => {
                 self.remove(stage, key)?;
-                self.damage.lock().unwrap_or_else(PoisonError::into_inner).push(format!("{damage}; it was taken away and is made anew"));
+                self.tell_damage(&format!("{damage}; it was taken away and is made anew"));
                 Ok(None)
             }
             found => found,
         }
+    }
+
+    fn tell_damage(&self, sentence: &str) {
+        self.damage.lock().unwrap_or_else(PoisonError::into_inner).push(sentence.to_owned());
     }
 
     /// One sentence for each damaged entry that was found since the last call.

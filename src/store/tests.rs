@@ -87,6 +87,47 @@ fn a_second_finish_replaces_and_a_reader_reads_on() {
 }
 
 #[test]
+fn an_equal_entry_stays_in_its_place_and_one_that_lacks_a_blob_is_replaced() {
+    let (_home, store) = store();
+    let finish = |blobs: &[&str], turn: u32| {
+        let writer = store.begin("motion", "k").unwrap();
+        blobs.iter().for_each(|name| writer.put(name, name.as_bytes()).unwrap());
+        writer.finish(json!(turn)).unwrap().meta().clone()
+    };
+    let there = || store.get("motion", "k").unwrap().unwrap();
+    assert_eq!(finish(&["checkpoint"], 1), json!(1));
+    // Its folder is never away: nobody who looks meanwhile misses it.
+    assert_eq!((finish(&["checkpoint"], 2), there().meta()), (json!(1), &json!(1)));
+    assert_eq!((finish(&["checkpoint", "motion"], 3), there().meta()), (json!(3), &json!(3)));
+    // Nor does one that has less take the place of one that has more.
+    assert_eq!((finish(&["checkpoint"], 4), there().has("motion")), (json!(3), true));
+    fs::write(there().path("motion").unwrap(), b"short").unwrap();
+    assert_eq!(finish(&["checkpoint", "motion"], 5), json!(5));
+    assert_eq!(leftovers(&store), 0);
+}
+
+#[test]
+fn a_flipped_digit_in_the_list_of_an_entry_is_damage() {
+    let (_home, store) = store();
+    let list = put(&store, "k", b"0123456789").path("motion").unwrap().with_file_name(entry::MANIFEST);
+    let text = fs::read_to_string(&list).unwrap();
+    fs::write(&list, text.replace(r#""key":"k""#, r#""key":"x""#)).unwrap();
+    assert!(store.get("simulate", "k").unwrap().is_none());
+    assert!(store.take_damage()[0].contains("its checksum differs"));
+}
+
+#[test]
+fn a_list_of_pins_that_cannot_be_read_holds_up_nobody() {
+    let (_home, store) = store();
+    drop(put(&store, "old", &[0; 10_000]));
+    store.pin("head", [("simulate", "old")]).unwrap();
+    fs::write(store.dir().join("pins/head.json"), b"[\"simul").unwrap();
+    drop(put(&store.clone().with_cap(11_000), "new", &[0; 10_000]));
+    assert!(store.contains("simulate", "new") && !store.contains("simulate", "old"));
+    assert!(store.take_damage()[0].contains("head.json"));
+}
+
+#[test]
 fn damage_is_said_once_and_then_missed() {
     let (_home, store) = store();
     let path = put(&store, "short", b"0123456789").path("motion").unwrap();
@@ -105,7 +146,7 @@ fn damage_is_said_once_and_then_missed() {
     assert!(store.get("simulate", "flipped").unwrap().is_none());
     assert_eq!((store.take_damage().len(), store.take_damage().len()), (1, 0));
 
-    for file in [entry::MANIFEST, entry::USED] {
+    for file in [entry::MANIFEST, entry::SEAL, entry::USED] {
         let entry = put(&store, "holed", b"x");
         fs::remove_file(entry.path("motion").unwrap().with_file_name(file)).unwrap();
         drop(entry);

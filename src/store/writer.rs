@@ -9,8 +9,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use rayon::prelude::*;
 use serde_json::Value;
 
-use super::entry::{Blob, MANIFEST, Manifest, USED};
-use super::{Entry, Store, StoreError, atomic};
+use super::entry::{Blob, MANIFEST, Manifest, SEAL, USED};
+use super::{Entry, Store, StoreError, atomic, evict};
 
 type Blobs = Arc<Mutex<BTreeMap<String, Blob>>>;
 
@@ -69,19 +69,21 @@ impl EntryWriter {
         Ok(())
     }
 
-    /// Brings everything to disk and makes the entry visible, in place of one that was there; then
-    /// makes room if the store has grown too big.
+    /// Brings everything to disk and makes the entry visible; then makes room if the store has grown too big. An entry that is
+    /// there already and has all of this one's blobs stays in its place: whoever looks finds one at any time.
     pub fn finish(mut self, meta: Value) -> Result<Entry, StoreError> {
         let blobs = lock(&self.blobs).clone();
         blobs.par_iter().try_for_each(|(name, _)| sync(&self.folder.join(name)))?;
-        let manifest = serde_json::to_vec(&Manifest { meta, blobs }).map_err(|error| StoreError::damaged(&self.target, error))?;
-        let manifest_path = self.folder.join(MANIFEST);
-        atomic::write_atomic(&manifest_path, &manifest).map_err(StoreError::io("written", &manifest_path))?;
+        let manifest = Manifest { meta, blobs };
+        manifest.write(&self.folder)?;
 
         let stage = self.target.parent().unwrap_or(Path::new("."));
         fs::create_dir_all(stage).map_err(StoreError::io("made", stage))?;
         let guard = self.store.lock()?;
-        self.store.discard(&guard, &self.target)?;
+        if let Some(there) = Entry::open_at(&self.target).ok().flatten().filter(|there| there.holds(&manifest.blobs)) {
+            return Ok(there);
+        }
+        let gone = self.store.take_out(&guard, &self.target)?;
         // From here on it is an entry like any other: what follows takes it up by its own lock.
         drop(self.used.take());
         let moved = fs::rename(&self.folder, &self.target).and_then(|()| atomic::sync_folder(stage));
@@ -89,13 +91,14 @@ impl EntryWriter {
             let _ = fs::remove_dir_all(&self.folder);
             return Err(StoreError::io("written", &self.target)(error));
         }
+        gone.map_or(Ok(()), |gone| evict::remove_folder(&gone))?;
         let entry = Entry::open_at(&self.target)?.ok_or_else(|| StoreError::damaged(&self.target, "it vanished"))?;
         self.store.evict(&guard)?;
         Ok(entry)
     }
 
     fn blob_path(&self, name: &str) -> Result<PathBuf, StoreError> {
-        let reserved = name == MANIFEST || name == USED;
+        let reserved = [MANIFEST, SEAL, USED].contains(&name);
         if reserved { Err(StoreError::Name { name: name.to_owned() }) } else { Ok(self.folder.join(super::checked(name)?)) }
     }
 }
