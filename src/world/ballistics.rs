@@ -3,10 +3,11 @@
 
 use super::ObjectFacts;
 use super::prepared::{NEAR_M, support_below};
+use super::settings::lets_go_s;
 use super::spread;
 use crate::solver::velocity_change;
 use crate::spec::expression::{Inputs, Program};
-use crate::spec::{Event, FieldFacts, Force, Object, Pin, Spec, Until};
+use crate::spec::{Event, FieldFacts, Force, Object, Pin, Spec};
 use glam::DVec3;
 
 /// Seconds granted after the last landing or stop, for what ballistics do not know.
@@ -42,6 +43,8 @@ struct Body {
     /// Pushes that wait for its landing, and whether it has been in the air.
     waiting: Vec<Event>,
     flown: bool,
+    /// Where each of its pins took hold of it.
+    held_from: Vec<Option<DVec3>>,
 }
 
 impl Body {
@@ -106,13 +109,14 @@ pub fn predict(spec: &Spec, object: usize, facts: &ObjectFacts, ground_m: f64, u
     let Some(thing) = spec.objects.get(object) else { return Path::default() };
     let drives = Drives::of(spec, thing, facts);
     let waiting = spec.events.iter().filter(|e| e.object == thing.name && e.when.is_some()).cloned().collect();
-    let mut body = Body { at: DVec3::from(thing.offset_m), velocity: DVec3::from(thing.velocity_m_s), waiting, flown: false };
+    let pins: Vec<&Pin> = spec.pins.iter().filter(|p| p.object == thing.name).collect();
+    let held_from = vec![None; pins.len()];
+    let mut body = Body { at: DVec3::from(thing.offset_m), velocity: DVec3::from(thing.velocity_m_s), waiting, flown: false, held_from };
     let mut events: Vec<_> = spec.events.iter().filter(|e| e.object == thing.name).collect();
     events.sort_by(|a, b| a.at_s.unwrap_or(until_s).total_cmp(&b.at_s.unwrap_or(until_s)));
     let mut path = Path { points: vec![body.at], ..Path::default() };
     let mut now = 0.0;
-    let pins = spec.pins.iter().filter(|p| p.object == thing.name).collect();
-    let ground = Ground { spec, restitution: restitution(thing, spec), facts, ground_m, gravity, start: body.at, pins };
+    let ground = Ground { spec, restitution: restitution(thing, spec), facts, ground_m, gravity, pins };
     for (event, at_s) in events.into_iter().filter_map(|event| Some((event, event.at_s?))) {
         travel(&mut body, now, at_s.min(until_s), &ground, &drives, &mut path);
         now = at_s;
@@ -145,23 +149,26 @@ struct Ground<'a> {
     facts: &'a ObjectFacts,
     ground_m: f64,
     gravity: DVec3,
-    /// Its displacement at the start, from which pins lead it.
-    start: DVec3,
     pins: Vec<&'a Pin>,
 }
 
 impl Ground<'_> {
-    /// Where a pin has it at a time; a part that is held holds the rest, as far as a picture goes.
-    fn held_at(&self, time_s: f64) -> Option<DVec3> {
-        let lasts = |pin: &&&Pin| pin.from_s <= time_s && if let Until::Time(to_s) = pin.to_s { time_s < to_s } else { true };
-        let pin = self.pins.iter().find(lasts)?;
+    /// Where a pin has it at a time, led from where it took hold; a part that is held holds the rest, as far as a picture goes.
+    fn held_at(&self, body: &mut Body, time_s: f64) -> Option<DVec3> {
+        let number = self.pins.iter().position(|pin| pin.from_s <= time_s && time_s < lets_go_s(self.spec, pin))?;
+        let (pin, from) = (self.pins[number], *body.held_from[number].get_or_insert(body.at));
         let begin = [pin.from_s, 0.0, 0.0, 0.0];
         let next = pin.path.iter().position(|point| point[0] > time_s);
         let before = next.map_or(pin.path.last(), |next| next.checked_sub(1).map(|i| &pin.path[i])).unwrap_or(&begin);
         let after = next.map_or(before, |next| &pin.path[next]);
         let place = |point: &[f64; 4]| DVec3::new(point[1], point[2], point[3]);
         let share = ((time_s - before[0]) / (after[0] - before[0]).max(1e-9)).clamp(0.0, 1.0);
-        Some(self.start + place(before).lerp(place(after), share))
+        Some(from + place(before).lerp(place(after), share))
+    }
+
+    /// When the next of its pins takes hold.
+    fn takes_hold_s(&self, time_s: f64) -> f64 {
+        self.pins.iter().map(|pin| pin.from_s).filter(|from_s| *from_s > time_s).fold(f64::INFINITY, f64::min)
     }
 
     /// The least displacement along z at a displacement: its lowest point on the ground, or on the collider that its
@@ -180,7 +187,7 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Dri
     let brake = ground.spec.world.ground.friction.max(LEAST_FRICTION) * (-gravity.z).max(0.0) * step_s;
     let mut now = from_s;
     while now < to_s {
-        if let Some(at) = ground.held_at(now + step_s) {
+        if let Some(at) = ground.held_at(body, now + step_s) {
             if at != body.at {
                 path.rests_s = path.rests_s.max(now + step_s);
                 path.needs_s = path.needs_s.max(now + step_s);
@@ -206,7 +213,7 @@ fn travel(body: &mut Body, from_s: f64, to_s: f64, ground: &Ground, drives: &Dri
             let speed = flat.length();
             if speed <= brake && now > drives.end_s() {
                 body.velocity = DVec3::ZERO;
-                now = to_s;
+                now = to_s.min(ground.takes_hold_s(now));
                 path.points.push(body.at);
                 continue;
             }
@@ -248,7 +255,7 @@ pub fn duration_s(spec: &Spec, facts: &[ObjectFacts], ground_m: f64) -> (f64, bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::{Auto, Axis, Event, Object, Output, Scene, Skin, Solver, Time, World};
+    use crate::spec::{Auto, Axis, Event, Object, Output, Region, Scene, Skin, Solver, Time, Until, World};
 
     fn spec() -> Spec {
         Spec {
@@ -309,7 +316,6 @@ mod tests {
 
     #[test]
     fn what_is_held_stays_and_what_is_led_goes_its_way() {
-        use crate::spec::Region;
         let mut spec = spec();
         spec.objects[0].offset_m = [0.0, 0.0, 0.5];
         let pin = Pin {
@@ -325,6 +331,24 @@ mod tests {
         let at = |time_s: f64| path.points[(time_s / 0.01).round() as usize];
         assert!((at(0.5) - DVec3::new(0.2, 0.0, 0.5)).length() < 0.01 && (at(1.9) - DVec3::new(0.4, 0.2, 0.5)).length() < 0.01);
         assert!(path.points.last().is_some_and(|p| p.z.abs() < 1e-9), "let go, it falls");
+    }
+
+    #[test]
+    fn what_is_released_falls_and_what_is_caught_stays_where_it_was_caught() {
+        let mut spec = spec();
+        spec.objects[0].offset_m = [0.0, 0.0, 2.0];
+        let pin = |from_s| Pin { name: "hook".into(), object: "vase".into(), region: Region::Above(0.9), from_s, to_s: Until::End, path: vec![] };
+        let at = |spec: &Spec, time_s: f64| predict(spec, 0, &facts()[0], 0.0, 4.0).points[(time_s / 0.01).round() as usize].z;
+        spec.pins = vec![pin(0.0)];
+        spec.events.push(Event { release: true, ..Event::at("let-go", "vase", 1.0) });
+        assert!(at(&spec, 0.99) == 2.0 && at(&spec, 1.3) < 1.7);
+        (spec.pins, spec.events) = (vec![pin(0.3)], vec![]);
+        let fallen_m = 0.5 * 9.81 * 0.3 * 0.3;
+        assert!((at(&spec, 0.3) - (2.0 - fallen_m)).abs() < 0.05 && at(&spec, 0.31) == at(&spec, 1.0));
+        // What lies still is led from there too.
+        spec.objects[0].offset_m = [0.0; 3];
+        spec.pins[0].path = vec![[1.0, 0.0, 0.0, 0.4]];
+        assert!(predict(&spec, 0, &facts()[0], 0.0, 4.0).points.iter().any(|p| (p.z - 0.4).abs() < 1e-9));
     }
 
     #[test]

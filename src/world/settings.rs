@@ -19,7 +19,7 @@ pub fn settings(spec: &Spec, matter: &Matter, resolved: &Resolved) -> Settings {
             .iter()
             .map(|c| Collider { shape: c.shape, friction: c.friction as f32, restitution: c.restitution as f32 })
             .collect(),
-        pins: spec.pins.iter().filter_map(|p| Some(pin(p, released_s(spec, p), matter, object(&p.object)?))).collect(),
+        pins: spec.pins.iter().filter_map(|p| Some(pin(p, lets_go_s(spec, p), matter, object(&p.object)?))).collect(),
         forces: spec
             .forces
             .iter()
@@ -52,6 +52,11 @@ fn end_s(until: Until) -> f64 {
     }
 }
 
+/// When a pin lets go: at its end, or where an event releases its object before.
+pub(super) fn lets_go_s(spec: &Spec, pin: &Pin) -> f64 {
+    end_s(pin.to_s).min(released_s(spec, pin))
+}
+
 /// When an event first releases an object after a pin began.
 fn released_s(spec: &Spec, pin: &Pin) -> f64 {
     let events = spec.events.iter().filter(|e| e.release && e.object == pin.object);
@@ -59,7 +64,7 @@ fn released_s(spec: &Spec, pin: &Pin) -> f64 {
 }
 
 /// A region of an object as a shape within the object's captured bounds; it goes with the object to where that starts.
-fn pin(pin: &Pin, released_s: f64, matter: &Matter, object: usize) -> PinRegion {
+fn pin(pin: &Pin, to_s: f64, matter: &Matter, object: usize) -> PinRegion {
     let (low, high) = bounds(&matter.particles.position_m[matter.bodies.ranges[object].clone()]);
     let level = |share: f64| f64::from(low.z) + share * f64::from(high.z - low.z);
     let slab = |from: f64, to: f64| {
@@ -76,13 +81,5 @@ fn pin(pin: &Pin, released_s: f64, matter: &Matter, object: usize) -> PinRegion 
         Region::Sphere(shape) => ColliderShape::Sphere(shape),
         Region::HalfSpace(PlaneShape { point_m, normal }) => ColliderShape::Plane(PlaneShape { point_m, normal }),
     };
-    PinRegion {
-        object: object as u32,
-        shape,
-        low_m: low,
-        high_m: high,
-        from_s: pin.from_s,
-        to_s: end_s(pin.to_s).min(released_s),
-        path: pin.path.clone(),
-    }
+    PinRegion { object: object as u32, shape, low_m: low, high_m: high, from_s: pin.from_s, to_s, path: pin.path.clone() }
 }

@@ -4,7 +4,7 @@ use super::Resolved;
 use super::bodies::Matter;
 use super::region::{bounds, holds};
 use crate::solver::{Substance, is_inside};
-use crate::spec::{Auto, Drive, Event, Force, Material, Spec};
+use crate::spec::{Drive, Event, Force, Material, Spec};
 use glam::Vec3;
 
 /// Less of an object inside something solid is its skin.
@@ -33,11 +33,12 @@ pub fn said(spec: &Spec, matter: &Matter, resolved: &Resolved) -> Vec<String> {
 
 /// What would begin when all is over.
 fn too_late(spec: &Spec, end_s: f64) -> Vec<String> {
-    let Auto::Value(asked_s) = spec.time.duration_s else { return Vec::new() };
-    if asked_s == 0.0 {
-        return Vec::new();
-    }
     let mut said = Vec::new();
+    // An automatic duration has an end as well, whatever begins later.
+    let asked_s = spec.time.duration_s.unwrap_or(end_s);
+    if asked_s == 0.0 {
+        return said;
+    }
     if asked_s - end_s > 1e-6 {
         said.push(format!("time.duration_s = {asked_s} is no whole number of frames of 1/{} s: the last one is at {end_s:.3} s", spec.time.fps));
     }
@@ -152,7 +153,7 @@ fn points<'a>(spec: &Spec, matter: &'a Matter, object: &str) -> Option<&'a [Vec3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::{Attractor, Object, Part, Pin, Region, Rigid, Until, Wind};
+    use crate::spec::{Attractor, Auto, Object, Part, Pin, Region, Rigid, Until, Wind};
 
     fn spec() -> Spec {
         let mut spec = crate::scene::demo::spec();
