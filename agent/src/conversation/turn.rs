@@ -116,7 +116,8 @@ impl Conversation {
     pub fn run_base(&mut self, words: &str, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
         self.begin(words, listener);
         let spec = self.session.spec().clone();
-        let result = self.session.commit(words, &[], &spec).map_err(Failure::from).and_then(|version| {
+        let made = self.able().and_then(|()| Ok(self.session.commit(words, &[], &spec)?));
+        let result = made.and_then(|version| {
             listener.event(Event::SpecEdited { from: None, to: version.name.clone(), edits: Vec::new(), changes: Vec::new() });
             self.run(&version, None, listener, stop)
         });
