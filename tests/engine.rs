@@ -5,7 +5,7 @@
 
 use phystalk::gpu::DeviceRequest;
 use phystalk::scene::{self, Gaussians};
-use phystalk::spec::{Auto, Camera, Event, Spec};
+use phystalk::spec::{Auto, Camera, Event, Pin, Region, Spec, Until};
 use phystalk::stages::{Action, Engine, Report, RunOptions, StageName};
 use phystalk::store::Store;
 use phystalk::{Frame, Progress, Sink, Stop};
@@ -129,4 +129,65 @@ fn a_stopped_run_keeps_what_it_finished() {
     assert!(report.stopped && report.metrics.frames < 13);
     let plan = engine.plan(&spec, folder, &RunOptions::default(), Some(&spec)).unwrap();
     assert_eq!(plan.stage(StageName::Simulate).unwrap().action, Action::Resume);
+}
+
+/// A film and what was measured, of a run that ends as `spec` says, resumed from another in `engine` and in one piece.
+fn goes_on_to_the_same_bits(engine_a: &mut Engine, spec: &Spec, folder: &Path, camera: Camera) {
+    let (resumed, film) = run(engine_a, spec, folder, None, Some(camera));
+    assert_eq!(resumed.plan.stages[3].from_s, Some(0.25));
+    let fresh = tempfile::tempdir().unwrap();
+    let (whole, direct) = run(&mut engine(folder, &fresh.path().join("store").to_string_lossy()), spec, folder, None, Some(camera));
+    assert_eq!(whole.metrics.objects, resumed.metrics.objects);
+    assert!(film.len() == direct.len() && film.iter().zip(&direct).all(|(a, b)| a.png == b.png));
+}
+
+#[test]
+fn a_pin_that_begins_later_goes_on_from_what_was_there_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let first = spec(folder);
+    let mut engine = engine(folder, "store");
+    let camera = run(&mut engine, &first, folder, None, None).0.camera;
+    let mut held = first.clone();
+    let pin = Pin { name: "hold".into(), object: "block".into(), region: Region::Below(0.3), from_s: 0.3, to_s: Until::End, path: vec![] };
+    held.pins.push(pin);
+    goes_on_to_the_same_bits(&mut engine, &held, folder, camera);
+}
+
+/// Turns over a bit in the middle of every blob of a name.
+fn spoil(folder: &Path, stage: &str, name: &str) {
+    let mut spoilt = 0;
+    for entry in std::fs::read_dir(folder.join("store/cache").join(stage)).unwrap() {
+        let path = entry.unwrap().path().join(name);
+        let Ok(mut bytes) = std::fs::read(&path) else { continue };
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        std::fs::write(&path, bytes).unwrap();
+        spoilt += 1;
+    }
+    assert!(spoilt > 0);
+}
+
+#[test]
+fn what_is_damaged_in_the_store_is_made_again_to_the_same_bits() {
+    use Action::{Hit, Run};
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let first = spec(folder);
+    let mut engine = engine(folder, "store");
+    let (report, film) = run(&mut engine, &first, folder, None, None);
+    spoil(folder, "picture", "frames");
+    // The plan says what was done, not what seemed to be there.
+    let (again, drawn) = run(&mut engine, &first, folder, Some(&first), Some(report.camera));
+    assert_eq!(actions(&again), [Hit, Hit, Hit, Hit, Run]);
+    assert!(film.len() == drawn.len() && film.iter().zip(&drawn).all(|(a, b)| a.png == b.png));
+    // States to go on from: the nearest that is sound is the start.
+    spoil(folder, "motion", "checkpoint");
+    let mut pushed = first.clone();
+    pushed.events.push(Event { push_m_s: Some([1.0, 0.0, 0.0]), ..Event::at("push1", "block", 0.3) });
+    goes_on_to_the_same_bits(&mut engine, &pushed, folder, report.camera);
+    spoil(folder, "prestress", "state");
+    let mut slower = first.clone();
+    slower.objects[0].velocity_m_s = [0.0, 0.0, 0.5];
+    assert_eq!(actions(&run(&mut engine, &slower, folder, None, None).0)[3], Run);
 }

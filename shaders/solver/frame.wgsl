@@ -31,16 +31,6 @@ fn tidy(value: f32) -> f32 {
     return clamp(round(value * 16384.0) * (1.0 / 16384.0), -1000.0, 1000.0);
 }
 
-// What keeps no shape: 1 for grains, 2 for pastes, 3 for liquids, else 0. See `Flow`.
-fn flow(kind: u32) -> f32 {
-    switch (kind) {
-        case SAND, SNOW: { return 1.0; }
-        case VISCOPLASTIC: { return 2.0; }
-        case LIQUID, SPH_LIQUID: { return 3.0; }
-        default: { return 0.0; }
-    }
-}
-
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (id.x >= params.count) {
@@ -66,7 +56,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         pack2x16float(vec2<f32>(a.z, b.x)),
         pack2x16float(b.yz),
         pack2x16float(c.xy),
-        pack2x16float(vec2<f32>(c.z, flow(s.kind))),
+        pack2x16float(vec2<f32>(c.z, s.flow)),
     );
     velocity[particle] = vec4<f32>(kinematics[n + i].xyz, volume_ratio(s, matter[3u * n + i].w, determinant(elastic)));
 }

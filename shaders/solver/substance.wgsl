@@ -10,7 +10,10 @@ struct Substance {
     shown_least: f32,
     shown_most: f32,
     // The law's own numbers, in the order of `src/solver/substance.rs`.
-    values: array<f32, 6>,
+    values: array<f32, 5>,
+    // How it flows for the eye: 1 for grains, 2 for pastes, 3 for liquids, 0 for what keeps its shape. What froze goes on as it
+    // was. See `Flow` in Rust.
+    flow: f32,
 }
 
 fn row_of(tag: u32) -> u32 {

@@ -138,6 +138,11 @@ impl Gpu {
         GpuError::Lost { device: self.info.name.clone(), reason: reason.to_string() }
     }
 
+    /// Whether another one is the same device.
+    pub fn is(&self, other: &Gpu) -> bool {
+        Arc::ptr_eq(&self.refused, &other.refused)
+    }
+
     /// An error where the driver refused something since the device was opened: what was to be made then is not there.
     pub fn sound(&self) -> Result<(), GpuError> {
         match self.refused.get() {

@@ -3,11 +3,13 @@
 use super::budget;
 use super::constants::{LEAST_SPEED_M_S, PUSH_SHARE};
 use super::core::Solver;
+use super::encounter::Layers;
 use super::fields::Fields;
 use super::grid::GridBuffers;
+use super::grip::Grip;
 use super::obstacles;
 use super::retry::{Tries, WayOn};
-use super::types::{Advance, SolverError};
+use super::types::{Advance, PinRegion, SolverError};
 use super::watch::{Control, Watch};
 use crate::Stop;
 use crate::gpu::{Readback, Recording, Tier};
@@ -296,15 +298,21 @@ impl Solver {
                 *sum += force.acceleration_m_s2;
             }
         }
-        let pins = self.settings.pins.iter().zip(&self.grips).filter(|(p, _)| self.in_force(p.from_s, p.to_s));
-        let records: Vec<_> =
-            pins.map(|(p, grip)| obstacles::pin(p, &grip.pose, self.layers.layer_of(p.object), self.settings.cell_m, self.time_s)).collect();
-        self.params.pin_count = records.len() as u32;
-        self.gpu.upload(&self.pins_buffer, &records);
+        self.set_pins(|layers, object| layers.layer_of(object));
         self.set_fields();
         self.gpu.upload(&self.objects_buffer, &accelerations.iter().map(|a| a.extend(0.0)).collect::<Vec<_>>());
         let driven = accelerations.iter().map(|a| a.length()).fold(0.0, f32::max);
         self.settings.gravity_m_s2.length() + driven
+    }
+
+    /// Uploads the pins of the present time, each for the layer of the grid that its object is on.
+    pub(super) fn set_pins(&mut self, layer_of: impl Fn(&Layers, u32) -> u32) {
+        let pins = self.settings.pins.iter().zip(&self.grips).filter(|(p, _)| self.in_force(p.from_s, p.to_s));
+        let record =
+            |(p, grip): (&PinRegion, &Grip)| obstacles::pin(p, &grip.pose, layer_of(&self.layers, p.object), self.settings.cell_m, self.time_s);
+        let records: Vec<_> = pins.map(record).collect();
+        self.params.pin_count = records.len() as u32;
+        self.gpu.upload(&self.pins_buffer, &records);
     }
 
     /// Substeps from physics: dt <= cfl cell / (c + |v|), equal parts of the whole frame, of which a cut

@@ -93,11 +93,19 @@ pub(super) fn slacken(substances: &mut [Substance], states: &[ParticleState], se
     softened.into_values().collect()
 }
 
-/// By how much each substance may stiffen as it packs, and what of that is less than it asks for, one entry an object.
-pub(super) fn stiffenings(substances: &[Substance], states: &[ParticleState], settings: &Settings, time_s: f64) -> (Vec<f32>, Vec<Softened>) {
+/// By how much each substance may stiffen as it packs, and what of that is less than it asks for and not as `known` already,
+/// one entry an object.
+pub(super) fn stiffenings(
+    substances: &[Substance],
+    states: &[ParticleState],
+    settings: &Settings,
+    known: &[f32],
+    time_s: f64,
+) -> (Vec<f32>, Vec<Softened>) {
     let fastest_m_s = fastest_m_s(settings);
     let mut most = vec![f32::MAX; substances.len()];
-    let mut softened: BTreeMap<u32, Softened> = BTreeMap::new();
+    // By object and row: the least share of what is asked for.
+    let mut least: BTreeMap<(u32, usize), f32> = BTreeMap::new();
     for s in states {
         let Some(Substance::Snow { hardening, .. }) = substances.get(s.substance()) else { continue };
         let asked = (hardening * (1.0 - PACKING_LEAST)).exp();
@@ -107,9 +115,14 @@ pub(super) fn stiffenings(substances: &[Substance], states: &[ParticleState], se
         }
         let value = &mut most[s.substance()];
         *value = value.min(carried);
-        let new = Softened { object: s.object(), what: Taut::Hardening, factor: 1.0, value: *value, time_s, reason: reason(settings) };
-        let entry = softened.entry(s.object()).or_insert(new);
-        (entry.factor, entry.value) = (entry.factor.min(carried / asked), entry.value.min(*value));
+        let share = least.entry((s.object(), s.substance())).or_insert(1.0);
+        *share = share.min(carried / asked);
+    }
+    let mut softened: BTreeMap<u32, Softened> = BTreeMap::new();
+    for ((object, row), factor) in least.into_iter().filter(|((_, row), _)| known.get(*row) != Some(&most[*row])) {
+        let new = Softened { object, what: Taut::Hardening, factor, value: most[row], time_s, reason: reason(settings) };
+        let entry = softened.entry(object).or_insert(new);
+        (entry.factor, entry.value) = (entry.factor.min(factor), entry.value.min(most[row]));
     }
     (most, softened.into_values().collect())
 }

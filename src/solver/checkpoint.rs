@@ -1,7 +1,7 @@
 //! A solver's state as bytes, from which another goes on to the same bits.
 
 use super::core::Solver;
-use super::grip::Pose;
+use super::grip::{Begun, Grip};
 use super::state::{PLANES, ParticleState, unpack};
 use super::substance::Substance;
 use super::types::SolverError;
@@ -24,6 +24,8 @@ struct Header {
     table_bytes: u64,
     /// Rigid bodies.
     bodies: u64,
+    /// Pins that have begun.
+    grips: u64,
     wary: Wary,
 }
 
@@ -67,9 +69,19 @@ impl Solver {
         let table = serde_json::to_vec(&self.laws.substances).map_err(|e| SolverError::Checkpoint { what: e.to_string() })?;
         let table_bytes = table.len() as u64;
         let bodies = self.rigid.as_ref().map_or(0, |r| r.count() as u64);
-        let header =
-            Header { magic: MAGIC, version: super::VERSION, count, substep: self.substep, time_s: self.time_s, table_bytes, bodies, wary: self.wary };
-        let head = [bytemuck::bytes_of(&header), &table, bytemuck::cast_slice(&self.poses())].concat();
+        let begun: Vec<Begun> = self.grips.iter().filter_map(Grip::begun).collect();
+        let header = Header {
+            magic: MAGIC,
+            version: super::VERSION,
+            count,
+            substep: self.substep,
+            time_s: self.time_s,
+            table_bytes,
+            bodies,
+            grips: begun.len() as u64,
+            wary: self.wary,
+        };
+        let head = [bytemuck::bytes_of(&header), &table, bytemuck::cast_slice(&begun)].concat();
         // A change may have made them on the way.
         let anchors = bytemuck::cast_slice(self.rigid.as_ref().map_or(&[][..], |r| &r.anchors_host)).to_vec();
         let state = &self.buffers[self.current];
@@ -81,11 +93,8 @@ impl Solver {
         Ok(Checkpoint { head, anchors, count: count as usize, readback, gpu: self.gpu.clone() })
     }
 
-    fn poses(&self) -> Vec<Pose> {
-        self.grips.iter().map(|grip| grip.pose).collect()
-    }
-
-    /// Goes back, or forward, to a checkpoint of a solver with the same settings and particles. Settings that changed on
+    /// Goes back, or forward, to a checkpoint of a solver with the same particles and the same settings until then: pins that
+    /// begin later may be others. Settings that changed on
     /// the way ([`Solver::end_pins`]) are the caller's: going forward they have to change again, and back of their change
     /// only a solver made anew will do.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SolverError> {
@@ -105,12 +114,12 @@ impl Solver {
         // A material may have changed since the start.
         let table: Vec<Substance> = serde_json::from_slice(table).map_err(|e| refuse(e.to_string()))?;
         self.set_substances(&table)?;
-        let of_poses = size_of_val(self.poses().as_slice());
-        let Some((poses, bytes)) = bytes.split_at_checked(of_poses) else {
-            return Err(refuse(format!("{} bytes, of which {of_poses} are where pins hold", bytes.len())));
+        let of_grips = (header.grips as usize).saturating_mul(size_of::<Begun>());
+        let Some((begun, bytes)) = bytes.split_at_checked(of_grips) else {
+            return Err(refuse(format!("{} bytes, of which {of_grips} are where pins hold", bytes.len())));
         };
-        let poses: Vec<Pose> = bytemuck::pod_collect_to_vec(poses);
-        self.grips.iter_mut().zip(poses).for_each(|(grip, pose)| grip.pose = pose);
+        let begun: Vec<Begun> = bytemuck::pod_collect_to_vec(begun);
+        self.grips.iter_mut().for_each(|grip| grip.resume(&begun));
         let anchors = if header.bodies > 0 { count * size_of::<[f32; 4]>() } else { 0 };
         let short = |whole: usize| refuse(format!("{} bytes where {count} particles take {whole}", bytes.len()));
         if bytes.len() < states + tail + anchors || header.bodies > count as u64 {

@@ -74,9 +74,20 @@ impl Pose {
     }
 }
 
+/// A pin that has begun, as a checkpoint has it: whatever other pins there are, this one is found again.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct Begun {
+    /// Which pin it is.
+    pin: u64,
+    pose: Pose,
+}
+
 /// The part that one pin holds.
 #[derive(Clone, Debug)]
 pub(super) struct Grip {
+    /// What the pin holds and from when, as a number: pins of which that is equal hold alike from then on.
+    pin: u64,
     object: u32,
     members: Vec<u32>,
     captured_m: Vec<Vec3>,
@@ -89,8 +100,30 @@ impl Grip {
         let record = obstacles::pin(region, &Pose::CAPTURED, 0, cell_m, 0.0);
         let held = |s: &ParticleState| s.object() == region.object && record.surrounds(s.position_m);
         let (members, captured_m) = (0u32..).zip(states).filter(|(_, s)| held(s)).map(|(i, s)| (i, s.position_m)).unzip();
-        Grip { object: region.object, members, captured_m, pose: Pose::CAPTURED }
+        Grip { pin: identity(region), object: region.object, members, captured_m, pose: Pose::CAPTURED }
     }
+
+    /// What a checkpoint keeps of it; nothing before it begins.
+    pub fn begun(&self) -> Option<Begun> {
+        (self.pose.begun != 0).then_some(Begun { pin: self.pin, pose: self.pose })
+    }
+
+    /// Holds as it did in a checkpoint, or not yet.
+    pub fn resume(&mut self, begun: &[Begun]) {
+        self.pose = begun.iter().find(|kept| kept.pin == self.pin).map_or(Pose::CAPTURED, |kept| kept.pose);
+    }
+
+    /// Whether it holds anything of an object.
+    pub fn holds_of(&self, object: u32) -> bool {
+        self.object == object && !self.members.is_empty()
+    }
+}
+
+/// Of what a pin holds and from when; how it moves and when it ends change nothing of how it began.
+fn identity(region: &PinRegion) -> u64 {
+    let whole = format!("{} {:?} {:?} {:?} {:?}", region.object, region.shape, region.low_m, region.high_m, region.from_s);
+    let hash = blake3::hash(whole.as_bytes());
+    hash.as_bytes().iter().take(8).fold(0, |number, byte| number << 8 | u64::from(*byte))
 }
 
 impl Solver {

@@ -50,7 +50,7 @@ impl Laws {
     pub fn new(gpu: &crate::gpu::Gpu) -> Result<Laws, SolverError> {
         Ok(Laws {
             substances: Vec::new(),
-            table: gpu.storage_from("solver.substances", &padded(&substance::records(&[]), 1))?,
+            table: gpu.storage_from("solver.substances", &padded(&substance::records(&[], &[]), 1))?,
             activations: gpu.storage_from("solver.activations", &[0f32])?,
             shown: None,
             none_shown: gpu.storage::<Rows>("solver.none_shown", 1)?,
@@ -80,9 +80,13 @@ impl Solver {
         if substances.len() > 1 << 15 {
             return Err(SolverError::Input { what: format!("{} substances", substances.len()), expected: "at most 32768".to_owned() });
         }
-        self.laws.table = self.gpu.storage_from("solver.substances", &padded(&substance::records(substances), 1))?;
+        // What was found of a substance holds as long as it has its row.
+        let known = self.laws.substances.iter().zip(&self.laws.stiffenings).map(Some).chain(std::iter::repeat(None));
+        let stiffening =
+            |(now, known): (&Substance, Option<(&Substance, &f32)>)| known.filter(|(then, _)| *then == now).map_or(f32::MAX, |(_, most)| *most);
+        self.laws.stiffenings = substances.iter().zip(known).map(stiffening).collect();
+        self.laws.table = self.gpu.storage_from("solver.substances", &padded(&substance::records(substances, &self.laws.stiffenings), 1))?;
         self.laws.substances = substances.to_vec();
-        self.laws.stiffenings.clear();
         if !self.laws.all && !substances.iter().all(Substance::is_plain) {
             let LawPasses { stress_laws, prestress_gather_laws } = LawPasses::new(&self.gpu);
             self.passes.stress = stress_laws;

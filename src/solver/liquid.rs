@@ -78,16 +78,12 @@ impl Solver {
     /// No more surface tension and hardening than the time step affords.
     pub(super) fn afford_substances(&mut self, states: &[ParticleState]) {
         let slackened = budget::slacken(&mut self.laws.substances, states, &self.settings, self.time_s);
-        let (stiffenings, capped) = budget::stiffenings(&self.laws.substances, states, &self.settings, self.time_s);
-        let news = stiffenings != self.laws.stiffenings;
-        if news || !slackened.is_empty() {
-            let records = substance::records(&self.laws.substances).into_iter().zip(&stiffenings);
-            self.gpu.upload(&self.laws.table, &records.map(|(record, most)| record.stiffened_to(*most)).collect::<Vec<_>>());
+        let (stiffenings, capped) = budget::stiffenings(&self.laws.substances, states, &self.settings, &self.laws.stiffenings, self.time_s);
+        if stiffenings != self.laws.stiffenings || !slackened.is_empty() {
+            self.gpu.upload(&self.laws.table, &substance::records(&self.laws.substances, &stiffenings));
         }
         self.softened.extend(slackened);
-        if news {
-            self.softened.extend(capped);
-        }
+        self.softened.extend(capped);
         self.laws.stiffenings = stiffenings;
         self.scale_liquids(states);
     }

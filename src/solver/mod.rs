@@ -33,6 +33,7 @@ mod rigid;
 mod sph;
 mod state;
 mod substance;
+mod support;
 mod transfer;
 mod types;
 pub mod validate;
@@ -85,4 +86,4 @@ pub fn shader_text() -> String {
 }
 
 /// Raised whenever the same input gives other bits.
-pub const VERSION: u32 = 35;
+pub const VERSION: u32 = 36;

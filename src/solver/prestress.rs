@@ -8,12 +8,12 @@
 //! relaxation in time would have to wait for.
 
 use super::advance::Substep;
-use super::constants::{FIXED_BITS, REST_CELLS, REST_CELLS_MAX, SLACK_CELLS};
+use super::constants::{FIXED_BITS, SLACK_CELLS};
 use super::core::Solver;
 use super::grid::GridBuffers;
-use super::obstacles::{self, distance_m};
 use super::record::Bound;
 use super::state::{ParticleState, RIGID_TAG};
+use super::support::Support;
 use super::types::{PrestressReport, SolverError};
 use super::watch::Control;
 use crate::Stop;
@@ -53,8 +53,6 @@ const SETTLED: f32 = 1e-3;
 const CONVERGED: f32 = 1e-2;
 /// Modulus of a rigid part over that of the stiffest particle of its object, while the search runs.
 const RIGID_OVER_SOFT: f32 = 8.0;
-/// Share of an object's height, from its lowest point, that counts as the base it stands on.
-const BASE_SHARE: f32 = 0.03;
 /// A particle is not started with less of its volume than this.
 const LEAST_VOLUME: f32 = 0.3;
 /// Nor with a larger entry of F - I.
@@ -105,7 +103,7 @@ impl Solver {
     /// Called before [`Solver::place`]; positions stay to the bit. Objects that nothing supports stay
     /// free of stress, and the report says so.
     pub fn prestress(&mut self, objects: &[u32], stop: &Stop, progress: &mut dyn FnMut(f32)) -> Result<PrestressReport, SolverError> {
-        let mut report = PrestressReport { converged: true, residual: 0.0, iterations: 0, warnings: Vec::new() };
+        let mut report = PrestressReport { converged: true, residual: 0.0, iterations: 0, hanging: Vec::new(), warnings: Vec::new() };
         if objects.is_empty() || self.settings.gravity_m_s2 == glam::Vec3::ZERO {
             return Ok(report);
         }
@@ -119,10 +117,12 @@ impl Solver {
         let seen = self.look()?;
         self.fit_window(seen.low, seen.high, SLACK_CELLS + 3)?;
         self.set_surroundings();
-        let supported = self.settle_offsets(&mut states, &objects, &mut report);
+        let Support { carried: supported, hanging } = self.support(&states, &objects);
+        report.hanging = hanging;
         if supported.is_empty() {
             return Ok(report);
         }
+        self.settle_offsets(&mut states, &supported);
         let carries = |s: &ParticleState| !s.is_rigid() && supported.contains(&s.object()) && self.laws.substances[s.substance()].can_stand();
         if !states.iter().any(carries) {
             // Heaps stand where they are, and carry nothing.
@@ -155,38 +155,6 @@ impl Solver {
         Ok(report)
     }
 
-    /// Lets what stands within a cell of its support stand on it exactly. The objects that something
-    /// supports.
-    fn settle_offsets(&self, states: &mut [ParticleState], objects: &[u32], report: &mut PrestressReport) -> Vec<u32> {
-        let cell_m = self.settings.cell_m;
-        let colliders = obstacles::colliders(&self.settings);
-        let pinned = self.settings.pins.iter().any(|p| self.in_force(p.from_s, p.to_s));
-        let mut supported = Vec::new();
-        for &object in objects {
-            let lowest_m = states.iter().filter(|s| s.object() == object).map(|s| distance_m(&colliders, s.position_m)).fold(f32::INFINITY, f32::min);
-            if lowest_m > REST_CELLS_MAX * cell_m {
-                if pinned {
-                    supported.push(object);
-                } else {
-                    report.warnings.push(format!(
-                        "object {object} hangs {:.0} mm above whatever is below it, so nothing carries it as captured: its pose is taken as free of stress",
-                        lowest_m * 1e3
-                    ));
-                }
-                continue;
-            }
-            supported.push(object);
-            let most_m = (REST_CELLS * cell_m).max(lowest_m + 0.01 * cell_m);
-            // A captured base is never quite flat: all of it stands, not its lowest grain alone.
-            let base_m = most_m.max((BASE_SHARE * height_m(states, object)).min(REST_CELLS_MAX * cell_m));
-            for state in states.iter_mut().filter(|s| s.object() == object) {
-                let distance_m = distance_m(&colliders, state.position_m);
-                state.rest_m = if distance_m <= base_m { distance_m } else { most_m }.max(-2.0 * REST_CELLS * cell_m);
-            }
-        }
-        supported
-    }
-
     /// Runs the search on pseudo masses; the particles with the F that it found, in original order.
     fn search(
         &mut self,
@@ -196,7 +164,7 @@ impl Solver {
         progress: &mut dyn FnMut(f32),
         report: &mut PrestressReport,
     ) -> Result<Vec<ParticleState>, SolverError> {
-        let mut scene = self.begin(&self.pseudo_particles(states, objects), stop)?;
+        let mut scene = self.begin(&self.pseudo_particles(states, objects), objects, stop)?;
         report.residual = residual(&self.first_system(&mut scene)?);
         let mut gained = 0.0;
         report.converged = false;
@@ -254,12 +222,13 @@ impl Solver {
     }
 
     /// Uploads pseudo particles, and the scales that suit their masses and their small displacements.
-    fn begin<'a>(&mut self, pseudo: &[ParticleState], stop: &'a Stop) -> Result<Scene<'a>, SolverError> {
+    fn begin<'a>(&mut self, pseudo: &[ParticleState], objects: &[u32], stop: &'a Stop) -> Result<Scene<'a>, SolverError> {
         let heaviest = pseudo.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
         self.params.mass_units = 2f32.powi(FIXED_BITS as i32 - heaviest.log2().ceil() as i32);
         self.params.momentum_floor = heaviest * 1e-12;
         // What stands together as captured carries each other.
         self.params.layers = 1;
+        self.set_pins(|_, object| if objects.contains(&object) { 0 } else { u32::MAX });
         self.buffers[self.current].upload(&self.gpu, pseudo);
         self.set_up(stop)
     }
@@ -268,7 +237,7 @@ impl Solver {
     #[cfg(test)]
     pub(super) fn search_rounds(&mut self, states: &[ParticleState], rounds: u32) -> Result<Rounds, SolverError> {
         let (pseudo, stop) = (self.pseudo_particles(states, &[0]), Stop::default());
-        let mut scene = self.begin(&pseudo, &stop)?;
+        let mut scene = self.begin(&pseudo, &[0], &stop)?;
         self.first_system(&mut scene)?;
         let mut recording = Recording::default();
         for _ in 0..rounds {
@@ -443,11 +412,4 @@ fn job(job: u32, index: u32) -> Substep {
 /// start free of stress.
 fn can_carry(f: glam::Mat3) -> bool {
     f.is_finite() && f.determinant() > LEAST_VOLUME && (f - glam::Mat3::IDENTITY).abs_diff_eq(glam::Mat3::ZERO, MOST_STRAIN)
-}
-
-/// Extent of an object along z.
-fn height_m(states: &[ParticleState], object: u32) -> f32 {
-    let heights = states.iter().filter(|s| s.object() == object).map(|s| s.position_m.z);
-    let (low, high) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
-    (high - low).max(0.0)
 }

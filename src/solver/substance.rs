@@ -7,7 +7,7 @@ use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// How matter that keeps no shape flows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Flow {
     /// Grains stay themselves: sand, snow.
     Grains = 1,
@@ -22,6 +22,14 @@ pub enum Flow {
 pub enum Substance {
     /// Returns to its shape.
     Elastic(ElasticModel),
+    /// The same of what froze out of matter that kept no shape. The eye goes on taking it for that: its particles are what
+    /// is seen.
+    Frozen {
+        /// How it returns to the shape that it froze in.
+        model: ElasticModel,
+        /// How it flowed before.
+        poured: Flow,
+    },
     /// Elastic, and pulls along its fibres by E times the activation (as stress at rest length).
     Muscle {
         /// Of its passive part.
@@ -141,7 +149,9 @@ pub(super) struct SubstanceRecord {
     pub kind: u32,
     pub model: u32,
     pub shown: [f32; 2],
-    pub values: [f32; 6],
+    pub values: [f32; 5],
+    /// How it flows for the eye, a [`Flow`]; 0 where it keeps its shape.
+    pub flow: f32,
 }
 
 /// Kinds, as WGSL knows them.
@@ -159,7 +169,7 @@ impl Substance {
     pub(super) fn record(&self) -> SubstanceRecord {
         let model_of = |model: &ElasticModel| u32::from(*model == ElasticModel::NeoHookean);
         let (kind, model, values) = match self {
-            Substance::Elastic(model) => (ELASTIC, model_of(model), [0.0; 3]),
+            Substance::Elastic(model) | Substance::Frozen { model, .. } => (ELASTIC, model_of(model), [0.0; 3]),
             Substance::Muscle { model, fibre, .. } => (MUSCLE, model_of(model), fibre.normalize_or_zero().to_array()),
             Substance::Plastic { yield_stress_pa, hardening_pa } => (PLASTIC, 0, [*yield_stress_pa, *hardening_pa, 0.0]),
             Substance::Viscoplastic { yield_stress_pa, viscosity_pa_s } => (VISCOPLASTIC, 0, [*yield_stress_pa, *viscosity_pa_s, 0.0]),
@@ -173,14 +183,15 @@ impl Substance {
             Substance::Rigid { friction, restitution } => (RIGID, 0, [*friction, *restitution, 0.0]),
         };
         let [a, b, c] = values;
-        SubstanceRecord { kind, model, shown: self.shown_stretch().unwrap_or_default(), values: [a, b, c, f32::MAX, 0.0, 0.0] }
+        let flow = self.flow().map_or(0.0, |flow| f32::from(flow as u8));
+        SubstanceRecord { kind, model, shown: self.shown_stretch().unwrap_or_default(), values: [a, b, c, f32::MAX, 0.0], flow }
     }
 
     /// Bounds of the stretch that is shown of what does not remember its shape; none where F is shown.
     /// Narrow where matter comes apart, so that no Gaussian becomes a needle.
     pub(super) fn shown_stretch(&self) -> Option<[f32; 2]> {
         match self {
-            Substance::Elastic(_) | Substance::Muscle { .. } | Substance::Rigid { .. } => None,
+            Substance::Elastic(_) | Substance::Frozen { .. } | Substance::Muscle { .. } | Substance::Rigid { .. } => None,
             Substance::Plastic { .. } => Some([0.3, 3.0]),
             Substance::Viscoplastic { .. } => Some([0.4, 2.5]),
             Substance::Sand { .. } | Substance::Snow { .. } => Some([0.7, 1.4]),
@@ -189,9 +200,11 @@ impl Substance {
         }
     }
 
-    /// How what keeps no shape flows, as `frame.wgsl` says it of each particle; none where it keeps it.
+    /// How what keeps no shape flows, or did before it froze, as `frame.wgsl` says it of each particle; none where it always
+    /// kept it.
     pub fn flow(&self) -> Option<Flow> {
         match self {
+            Substance::Frozen { poured, .. } => Some(*poured),
             Substance::Sand { .. } | Substance::Snow { .. } => Some(Flow::Grains),
             Substance::Viscoplastic { .. } => Some(Flow::Paste),
             Substance::Liquid { .. } | Substance::SphLiquid { .. } => Some(Flow::Liquid),
@@ -211,7 +224,7 @@ impl Substance {
 
     /// Whether the plain passes do, which know nothing but the elastic law; bodies have their own.
     pub(super) fn is_plain(&self) -> bool {
-        matches!(self, Substance::Elastic(_) | Substance::Rigid { .. }) || self.is_sph()
+        matches!(self, Substance::Elastic(_) | Substance::Frozen { .. } | Substance::Rigid { .. }) || self.is_sph()
     }
 
     /// Friction and restitution of a rigid one.
@@ -254,7 +267,11 @@ impl Substance {
 
     /// Whether it keeps a shape of its own.
     pub fn keeps_shape(&self) -> bool {
-        matches!(self, Substance::Elastic(_) | Substance::Muscle { .. } | Substance::Plastic { .. } | Substance::Rigid { .. })
+        match self {
+            Substance::Elastic(_) | Substance::Frozen { .. } | Substance::Muscle { .. } | Substance::Plastic { .. } | Substance::Rigid { .. } => true,
+            Substance::Viscoplastic { .. } | Substance::Sand { .. } | Substance::Snow { .. } => false,
+            Substance::Liquid { .. } | Substance::SphLiquid { .. } => false,
+        }
     }
 
     /// Whether its law says nothing of what is turned inside out: of the logarithm of no volume.
@@ -278,7 +295,7 @@ impl Substance {
 
     /// Whether its history is ln det F at the last sort, from which changes of volume are evened over a cell.
     pub(super) fn remembers_volume(&self) -> bool {
-        matches!(self, Substance::Elastic(_) | Substance::Muscle { .. })
+        matches!(self, Substance::Elastic(_) | Substance::Frozen { .. } | Substance::Muscle { .. })
     }
 
     /// The history of what has this F from now on, whatever it was before where the law asks F alone.
@@ -312,7 +329,7 @@ impl Substance {
     pub(super) fn flaw(&self) -> Option<String> {
         let positive = 0.0..f32::INFINITY;
         let fine = match self {
-            Substance::Elastic(_) => true,
+            Substance::Elastic(_) | Substance::Frozen { .. } => true,
             Substance::Rigid { friction, restitution } => positive.contains(friction) && (0.0..=1.0).contains(restitution),
             Substance::Muscle { fibre, .. } => fibre.is_finite() && *fibre != Vec3::ZERO,
             Substance::Plastic { yield_stress_pa, hardening_pa } => positive.contains(yield_stress_pa) && hardening_pa.is_finite(),
@@ -340,9 +357,9 @@ pub fn liquid_bulk_pa(depth_m: f32, speed_m_s: f32, gravity_m_s2: f32, density_k
     100.0 * density_kg_m3 * fastest_2
 }
 
-/// The rows that the particles' tags name.
-pub(super) fn records(substances: &[Substance]) -> Vec<SubstanceRecord> {
-    substances.iter().map(Substance::record).collect()
+/// The rows that the particles' tags name, each stiffened by packing no more than so many times.
+pub(super) fn records(substances: &[Substance], stiffenings: &[f32]) -> Vec<SubstanceRecord> {
+    substances.iter().zip(stiffenings).map(|(substance, most)| substance.record().stiffened_to(*most)).collect()
 }
 
 impl SubstanceRecord {

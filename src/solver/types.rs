@@ -285,7 +285,10 @@ pub struct PrestressReport {
     pub residual: f32,
     /// Rounds of relaxation.
     pub iterations: u32,
-    /// What a user should know.
+    /// Objects that nothing carries as captured, and how high they hang over what is below them, metres: they are taken as
+    /// free of stress.
+    pub hanging: Vec<(u32, f32)>,
+    /// What else a user should know.
     pub warnings: Vec<String>,
 }
 

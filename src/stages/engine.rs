@@ -164,17 +164,29 @@ impl Engine {
         sink: &mut dyn Sink,
         stop: &Stop,
     ) -> Result<Report, EngineError> {
-        super::run::run(self, spec, base, options, previous, sink, stop)
+        let done = super::run::run(self, spec, base, options, previous, sink, stop);
+        self.past(done)
+    }
+
+    /// Hands a result on. A device that is lost, or has no memory left, goes with what was made on it: the next turn opens one
+    /// anew.
+    pub(super) fn past<T>(&mut self, done: Result<T, EngineError>) -> Result<T, EngineError> {
+        if let Err(EngineError::Gpu(GpuError::NoMemory { .. } | GpuError::Lost { .. })) = &done {
+            (self.gpu, self.figure) = (None, None);
+        }
+        done
     }
 
     /// Pictures of Gaussians as they are, in their own frame.
     pub fn still(&mut self, gaussians: &Gaussians, views: &[View], options: &RenderOptions) -> Result<Vec<Image>, EngineError> {
         let gpu = self.device()?.clone();
         let object = vec![u32::MAX; gaussians.len()];
-        let splats = Splats::new(&gpu, gaussians, glam::Quat::IDENTITY, &object)?;
-        let mut renderer = Renderer::new(&gpu);
-        let images = views.iter().map(|view| Ok(renderer.draw(&splats, view, options)?.read(&gpu)?));
-        images.collect()
+        let draw = || -> Result<Vec<Image>, EngineError> {
+            let splats = Splats::new(&gpu, gaussians, glam::Quat::IDENTITY, &object)?;
+            let mut renderer = Renderer::new(&gpu);
+            views.iter().map(|view| Ok(renderer.draw(&splats, view, options)?.read(&gpu)?)).collect()
+        };
+        self.past(draw())
     }
 
     pub(super) fn solids(&mut self, spec: &Spec, ready: &Ready) -> Result<Made<Vec<Solid>>, EngineError> {

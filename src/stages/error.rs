@@ -55,8 +55,13 @@ pub enum EngineError {
     #[error("{0}")]
     Unstable(String),
     /// Too wide or too fast for the grid that the device holds.
-    #[error("{0}")]
-    TooLarge(String),
+    #[error("{text}")]
+    TooLarge {
+        /// What was, and what to do.
+        text: String,
+        /// Until when it moved; 0 where nothing did.
+        time_s: f64,
+    },
     /// The store failed.
     #[error(transparent)]
     Store(#[from] StoreError),
@@ -67,9 +72,19 @@ impl From<SolverError> for EngineError {
         match error {
             SolverError::Gpu(gpu) => EngineError::Gpu(gpu),
             large @ (SolverError::TooWide { .. } | SolverError::TooFar { .. } | SolverError::TooFast { .. }) => {
-                EngineError::TooLarge(large.to_string())
+                EngineError::TooLarge { text: large.to_string(), time_s: 0.0 }
             }
             other => EngineError::Unstable(other.to_string()),
+        }
+    }
+}
+
+impl EngineError {
+    /// What ended the motion at a time.
+    pub(super) fn at(error: SolverError, time_s: f64) -> EngineError {
+        match EngineError::from(error) {
+            EngineError::TooLarge { text, .. } => EngineError::TooLarge { text, time_s },
+            other => other,
         }
     }
 }

@@ -4,19 +4,19 @@
 use crate::gpu::Gpu;
 use crate::spec::{Event, Force, Object, Pin, Spec, Until};
 use crate::world::Resolved;
-use crate::{proxy, render, skin, solver};
+use crate::{proxy, render, skin, solver, world};
 use serde::Serialize;
 use serde_json::json;
 use std::sync::LazyLock;
 
 /// Changed whenever the meaning of any key does.
-const KEY_FORMAT: u32 = 3;
+const KEY_FORMAT: u32 = 4;
 /// Version of reading, turning, pruning and selecting.
 const SCENE_VERSION: u32 = 1;
 /// Version of choosing neighbours and weights.
 const BIND_VERSION: u32 = 1;
 /// Version of what a segment of motion holds.
-const SEGMENT_VERSION: u32 = 1;
+const SEGMENT_VERSION: u32 = 2;
 /// Version of what pictures hold.
 const PICTURE_VERSION: u32 = 1;
 
@@ -60,8 +60,21 @@ pub(super) fn prestress(spec: &Spec, keys: &StillKeys, resolved: &Resolved, gpu:
     let pins: Vec<_> = spec.pins.iter().filter(|p| p.from_s <= 0.0).map(|p| (&p.object, &p.region)).collect();
     // What is too stiff for the shortest substep is softened before.
     let shortest_s = solver::shortest_substep_s(1.0 / f64::from(spec.time.fps), spec.solver.substeps_most);
-    hash("prestress", &json!([solver::VERSION, *SOLVER_TEXT, device(gpu), keys.proxy, resolved.cell_m, shortest_s, resolved.ground_m, bodies, pins]))
-        + &hash("support", &json!([spec.world, spec.colliders]))
+    hash(
+        "prestress",
+        &json!([
+            solver::VERSION,
+            world::VERSION,
+            *SOLVER_TEXT,
+            device(gpu),
+            keys.proxy,
+            resolved.cell_m,
+            shortest_s,
+            resolved.ground_m,
+            bodies,
+            pins
+        ]),
+    ) + &hash("support", &json!([spec.world, spec.colliders]))
 }
 
 /// What motion until `to_s` depends on, and nothing that the spec says of later times.
@@ -91,9 +104,17 @@ fn end_before(until: Until, to_s: f64) -> Option<f64> {
 }
 
 fn force_until(force: &Force, to_s: f64) -> serde_json::Value {
-    // The way it acts, whole: a later point of a spring's path is part of it.
-    let way = Force { name: String::new(), to_s: Until::End, ..force.clone() };
-    json!([way, end_before(force.to_s, to_s)])
+    json!([way(force), end_before(force.to_s, to_s)])
+}
+
+/// The way a force acts, whole: a later point of a spring's path is part of it. What it is called and when it ends is not.
+fn way(force: &Force) -> Force {
+    Force { name: String::new(), to_s: Until::End, ..force.clone() }
+}
+
+/// What tells a force in what a segment says of itself, whatever it is called in the version that asks.
+pub(super) fn force(force: &Force) -> String {
+    hash("force", &way(force))
 }
 
 fn pin_until(pin: &Pin, to_s: f64) -> serde_json::Value {
@@ -111,6 +132,7 @@ pub(super) fn picture(spec: &Spec, motion: &str, keys: &StillKeys, resolved: &Re
             PICTURE_VERSION,
             skin::VERSION,
             render::VERSION,
+            world::VERSION,
             *PICTURE_TEXT,
             device(gpu),
             motion,

@@ -14,15 +14,22 @@ impl Engine {
     /// Hands over the frames that a version has, one still picture where it has none. Nothing is simulated or kept.
     /// Frames that are drawn anew carry no PNG.
     pub fn look(&mut self, spec: &Spec, base: &Path, options: &RunOptions, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
+        let looked = self.look_through(spec, base, options, sink, stop);
+        self.past(looked)
+    }
+
+    fn look_through(&mut self, spec: &Spec, base: &Path, options: &RunOptions, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
         let ready = self.ready(spec, base, options)?;
         if let Some(album) = Album::open(&self.store, &ready.picture)? {
-            album.show(sink, stop);
-            return Ok(());
+            return album.show(sink, stop);
         }
         let mut player = self.player(spec, base, options)?;
         for index in (0..player.frames.max(1)).take_while(|_| !stop.raised()) {
             let (camera, size) = (player.camera, player.size);
             let image = player.picture(self, index, &camera, size)?;
+            if index > 0 && index >= player.frames {
+                break;
+            }
             sink.frame(frame(index, ready.resolved.time_s(index, spec.time.fps), image));
         }
         Ok(())

@@ -8,6 +8,7 @@ use super::segments::{self, Kept, Segment, SolverTotals};
 use super::{EngineError, MemoryMetrics, StageName, pack, summary};
 use crate::gpu::{Gpu, Readback};
 use crate::render::Picture;
+use crate::solver::SolverError;
 use crate::spec::Spec;
 use crate::store::Store;
 use crate::world::bodies::Matter;
@@ -32,6 +33,11 @@ pub(super) struct Played {
     pub memory: MemoryMetrics,
 }
 
+/// Bytes of one frame of motion.
+pub(super) fn frame_bytes(matter: &Matter) -> usize {
+    matter.particles.len() * MOTION_WORDS * 4
+}
+
 /// The motion of one run.
 pub(super) struct Motion<'a> {
     gpu: Gpu,
@@ -53,8 +59,7 @@ pub(super) struct Motion<'a> {
 
 impl<'a> Motion<'a> {
     pub fn new(engine: &mut Engine, spec: &'a Spec, ready: &'a Ready, matter: &'a Matter) -> Result<Motion<'a>, EngineError> {
-        let frame_bytes = matter.particles.position_m.len() * MOTION_WORDS * 4;
-        let bytes = frame_bytes as f64 * f64::from(ready.resolved.frames);
+        let bytes = frame_bytes(matter) as f64 * f64::from(ready.resolved.frames);
         let keep_motion = bytes <= engine.store.cap_bytes() as f64 * MOTION_SHARE;
         let (rows, totals, parts) = (Vec::new(), SolverTotals::default(), BTreeMap::new());
         Ok(Motion {
@@ -79,21 +84,17 @@ impl<'a> Motion<'a> {
         self.played.figure = figure;
         let gpu = self.gpu.clone();
         let mut delivery = Delivery::new(&gpu, self.bodies.clone(), Keeper::new(&self.store, album));
-        let mut before: Option<Kept> = None;
-        for segment in &self.ready.segments {
+        for (number, segment) in self.ready.segments.iter().enumerate() {
             let kept = segments::get(&self.store, segment)?;
             let motion = match (&kept, &self.played.figure) {
-                (Some(kept), Some(_)) => kept.motion()?,
+                (Some(kept), Some(_)) => kept.motion(frame_bytes(self.matter))?,
                 _ => None,
             };
             let usable = kept.filter(|_| self.world.is_none() && (self.played.figure.is_none() || motion.is_some()));
             match usable {
-                Some(kept) => {
-                    self.replay(&kept, motion, segment, &mut delivery, sink)?;
-                    before = Some(kept);
-                }
+                Some(kept) => self.replay(&kept, motion, segment, &mut delivery, sink)?,
                 None => {
-                    self.wake(before.take(), segment, &mut delivery, sink, stop)?;
+                    self.wake(number, &mut delivery, sink, stop)?;
                     // A stress that was not found to its end is no state to go on from.
                     self.played.stopped = stop.raised() || self.simulate(segment, &mut delivery, sink, stop)?;
                 }
@@ -138,36 +139,71 @@ impl<'a> Motion<'a> {
         Ok(())
     }
 
-    /// Makes the world, at the state before a segment.
-    fn wake(
-        &mut self,
-        before: Option<Kept>,
-        segment: &Segment,
-        delivery: &mut Delivery,
-        sink: &mut dyn Sink,
-        stop: &Stop,
-    ) -> Result<(), EngineError> {
+    /// Makes the world, at the state before a segment: the nearest that the store has of those before it, and on from there.
+    fn wake(&mut self, number: usize, delivery: &mut Delivery, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
         if self.world.is_some() {
             return Ok(());
         }
         let clock = Instant::now();
-        let mut world = World::new(&self.gpu, self.spec, self.matter, &self.ready.resolved)?;
-        let made = self.spend("simulate.solver", clock);
-        tracing::debug!("solver made");
-        match before {
-            Some(kept) => world.restore(segment.first.saturating_sub(1), &kept.checkpoint()?)?,
-            None => {
-                self.draw_captured(&mut world, delivery, sink)?;
-                self.said = self.stand(&mut world, delivery, sink, stop)?;
-                self.said.extend(world.place(self.spec, self.matter)?);
-                self.said.iter().for_each(|w| sink.warning(w));
+        let mut world = None;
+        for before in self.ready.segments[..number].iter().rev() {
+            world = self.resumed(before)?;
+            if world.is_some() {
+                break;
             }
+        }
+        let made = self.spend("simulate.solver", clock);
+        let mut world = match world {
+            Some(world) => world,
+            None => self.begun(number, delivery, sink, stop)?,
+        };
+        // What was kept of the frames until there has been told.
+        while world.frame() + 1 < self.ready.segments[number].first && !stop.raised() {
+            world.step_frame(stop)?;
         }
         self.spend("simulate.standing", made);
         tracing::debug!("stands");
         self.world = Some(world);
         self.played.totals.seconds += clock.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    /// The world at the end of a segment; none where that was not kept, or is no state to go on from.
+    fn resumed(&self, segment: &Segment) -> Result<Option<World>, EngineError> {
+        let Some(kept) = segments::get(&self.store, segment)? else { return Ok(None) };
+        let Some(state) = kept.checkpoint()? else { return Ok(None) };
+        let mut world = World::new(&self.gpu, self.spec, self.matter, &self.ready.resolved)?;
+        let fits = self.restore(&mut world, segment.last, &state, ("motion", &segment.key))?;
+        Ok(fits.then_some(world))
+    }
+
+    /// Restores a state that the store keeps under a key. One that does not fit is taken away, and the world is as new.
+    fn restore(&self, world: &mut World, frame: u32, state: &[u8], (stage, key): (&str, &str)) -> Result<bool, EngineError> {
+        match world.restore(frame, state) {
+            Err(SolverError::Checkpoint { what }) => {
+                tracing::warn!("the state {stage}/{key} does not fit ({what}) and is made anew");
+                self.store.remove(stage, key)?;
+                *world = World::new(&self.gpu, self.spec, self.matter, &self.ready.resolved)?;
+                Ok(false)
+            }
+            restored => Ok(restored.map(|()| true)?),
+        }
+    }
+
+    /// The world at the start. Where an earlier run has told of it, nothing is told.
+    fn begun(&mut self, number: usize, delivery: &mut Delivery, sink: &mut dyn Sink, stop: &Stop) -> Result<World, EngineError> {
+        let mut world = World::new(&self.gpu, self.spec, self.matter, &self.ready.resolved)?;
+        tracing::debug!("solver made");
+        if number == 0 {
+            self.draw_captured(&mut world, delivery, sink)?;
+        }
+        let mut said = self.stand(&mut world, delivery, sink, stop)?;
+        said.extend(world.place(self.spec, self.matter)?);
+        if number == 0 {
+            said.iter().for_each(|w| sink.warning(w));
+            self.said = said;
+        }
+        Ok(world)
     }
 
     /// Draws frame 0 before the stress is known that holds it, where it shows the captured pose: no picture depends on
@@ -187,8 +223,8 @@ impl<'a> Motion<'a> {
     fn stand(&self, world: &mut World, delivery: &mut Delivery, sink: &mut dyn Sink, stop: &Stop) -> Result<Vec<String>, EngineError> {
         if let Some(entry) = pack::find(&self.store, "prestress", &self.ready.prestress)?
             && let Some(state) = pack::read::<u8>(&entry, "state")?
+            && self.restore(world, 0, &state, ("prestress", &self.ready.prestress))?
         {
-            world.restore(0, &state)?;
             let said = entry.meta().get("said").and_then(|said| serde_json::from_value(said.clone()).ok());
             return Ok(said.unwrap_or_default());
         }
@@ -200,25 +236,25 @@ impl<'a> Motion<'a> {
                 failed = delivery.deliver(sink);
             }
         };
-        let report = world.prestress(self.spec, stop, &mut progress)?;
+        let said = world.prestress(self.spec, stop, &mut progress)?;
         failed?;
         if !stop.raised() {
-            delivery.keep_standing(&self.ready.prestress, world.start_checkpoint()?, report.warnings.clone())?;
+            delivery.keep_standing(&self.ready.prestress, world.start_checkpoint()?, said.clone())?;
         }
-        Ok(report.warnings)
+        Ok(said)
     }
 
     /// Simulates one segment and has it kept; returns whether it was stopped on the way.
     fn simulate(&mut self, segment: &Segment, delivery: &mut Delivery, sink: &mut dyn Sink, stop: &Stop) -> Result<bool, EngineError> {
         let Some(mut world) = self.world.take() else { return Ok(false) };
         let mut totals = SolverTotals { said: std::mem::take(&mut self.said), ..SolverTotals::default() };
-        let bytes = (self.bodies.mass_kg.len() * MOTION_WORDS * 4) as u64;
+        let bytes = frame_bytes(self.matter) as u64;
         delivery.begin(segment, if self.keep_motion { bytes as usize } else { 0 });
         let mut stopped = false;
         for index in segment.first..=segment.last {
             let clock = Instant::now();
             if index > 0 {
-                let step = world.step_frame(stop)?;
+                let step = world.step_frame(stop).map_err(|e| EngineError::at(e, world.now_s()))?;
                 step.advance.iter().for_each(|a| totals.add(&summary::totals(a, self.spec)));
                 totals.fired.extend(&step.fired);
                 stopped = step.stopped;

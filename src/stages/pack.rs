@@ -19,6 +19,15 @@ pub(super) fn write<T: Pod>(entry: &EntryWriter, name: &str, values: &[T]) -> Re
     entry.put(name, bytemuck::cast_slice(values))
 }
 
+/// Whether a blob is what was written, read from start to end without keeping any of it.
+pub(super) fn is_sound(entry: &Entry, name: &str) -> Result<bool, StoreError> {
+    let read = std::io::copy(&mut entry.open(name)?, &mut std::io::sink());
+    if let Err(error) = &read {
+        tracing::warn!("{name} is damaged ({error}) and is made anew");
+    }
+    Ok(read.is_ok())
+}
+
 /// Reads one array back; a damaged blob or one of a wrong length reads as `None`, which callers treat as a miss.
 pub(super) fn read<T: Pod>(entry: &Entry, name: &str) -> Result<Option<Vec<T>>, StoreError> {
     let bytes = match entry.read(name) {

@@ -5,11 +5,12 @@ use super::motion::Motion;
 use super::{Action, EngineError, Metrics, Plan, RunOptions, StageName, pack, summary};
 use crate::gpu::Gpu;
 use crate::spec::{Auto, Spec};
-use crate::store::Store;
+use crate::store::{BlobReader, Entry, Store, StoreError};
 use crate::world::bodies::{Matter, matter};
 use crate::world::{Figure, asked_in_vain};
 use crate::{Frame, Sink, Stop, render, skin, solver};
 use std::collections::BTreeMap;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::time::Instant;
 
@@ -33,6 +34,11 @@ pub(super) fn run(
     let ready = engine.ready(spec, base, options)?;
     seconds.insert(StageName::Scene, clock.elapsed().as_secs_f64());
     let mut plan = engine.plan_of(&ready, spec, options, previous);
+    let album = if hits(&plan) { Album::open(&engine.store, &ready.picture)? } else { None };
+    if album.is_none() && hits(&plan) {
+        // They were damaged: what has to be done is more than it seemed.
+        plan = engine.plan_of(&ready, spec, options, previous);
+    }
     engine.memory.told();
     tracing::debug!("planned");
     let gpu = engine.device()?.clone();
@@ -68,11 +74,8 @@ pub(super) fn run(
         sink.note(&format!("the run ends at {ends_s} s, while something slides or is driven on: \"for {:.0} s\" shows more of it", 2.0 * ends_s));
     }
 
-    let wants_pictures = options.render;
-    let pictures_hit = wants_pictures && plan.stage(StageName::Picture).is_some_and(|s| s.action == Action::Hit);
-    let album = if pictures_hit { Album::open(&engine.store, &ready.picture)? } else { None };
     let clock = Instant::now();
-    let figure = if wants_pictures && album.is_none() { Some(take_figure(engine, spec, &ready, &bound.value, &matter)?) } else { None };
+    let figure = if options.render && album.is_none() { Some(take_figure(engine, spec, &ready, &bound.value, &matter)?) } else { None };
     tracing::debug!("figure made");
     let figure_s = clock.elapsed().as_secs_f64();
     let mut done = motion.play(figure, sink, stop)?;
@@ -80,7 +83,7 @@ pub(super) fn run(
         engine.figure = Some((ready.keys.bind.clone(), figure));
     }
     if let Some(album) = album.filter(|_| !done.stopped) {
-        album.show(sink, stop);
+        album.show(sink, stop)?;
         done.stopped = stop.raised();
     }
     let total = clock.elapsed().as_secs_f64();
@@ -93,7 +96,7 @@ pub(super) fn run(
     let made = [("scene", ready.keys.scene.as_str()), ("proxy", &ready.keys.proxy), ("bind", &ready.keys.bind), ("picture", &ready.picture)];
     engine.store.pin("head", made.into_iter().chain(motion).filter(|(stage, key)| engine.store.contains(stage, key)))?;
     warnings.extend(done.totals.said.iter().cloned());
-    let of_solver = summary::of_forces(&done.totals).into_iter().chain(summary::of_contacts(&done.totals));
+    let of_solver = summary::of_forces(&done.totals, spec).into_iter().chain(summary::of_contacts(&done.totals));
     let of_solver: Vec<String> = of_solver.chain(summary::of_mended(&done.totals)).collect();
     of_solver.iter().for_each(|w| sink.warning(w));
     warnings.extend(of_solver);
@@ -109,6 +112,11 @@ pub(super) fn run(
     crushed.iter().for_each(|w| sink.warning(w));
     warnings.extend(crushed);
     Ok(Report { plan, metrics, camera: ready.resolved.camera, stopped: done.stopped, warnings })
+}
+
+/// Whether the store has all pictures.
+fn hits(plan: &Plan) -> bool {
+    plan.stage(StageName::Picture).is_some_and(|s| s.action == Action::Hit)
 }
 
 /// Has the passes compiled that this run will ask for, as far as its plan tells.
@@ -136,7 +144,7 @@ fn warnings(ready: &Ready, solids: &[crate::proxy::Solid], matter: &Matter) -> V
 /// The figure of the last run where it is of the same binding, else a new one.
 fn take_figure(engine: &mut Engine, spec: &Spec, ready: &Ready, bound: &crate::skin::Bound, matter: &Matter) -> Result<Figure, EngineError> {
     match engine.figure.take() {
-        Some((key, figure)) if key == ready.keys.bind && figure.suits(matter) => Ok(figure),
+        Some((key, figure)) if key == ready.keys.bind && figure.suits(matter, spec.skin.weights) => Ok(figure),
         _ => {
             let gpu = engine.device()?.clone();
             Ok(Figure::new(&gpu, &ready.prepared.value, bound, matter, spec.skin.weights)?)
@@ -144,32 +152,46 @@ fn take_figure(engine: &mut Engine, spec: &Spec, ready: &Ready, bound: &crate::s
     }
 }
 
-/// Pictures that the store has.
+/// Pictures that the store has. One at a time is in memory.
 pub(super) struct Album {
-    /// One PNG after another, and where each ends.
-    bytes: Vec<u8>,
-    ends: Vec<usize>,
+    entry: Entry,
+    /// One PNG after another: where each ends.
+    ends: Vec<u64>,
     fps: f64,
 }
+
+/// The blob of an album.
+const FRAMES: &str = "frames";
 
 impl Album {
     /// None where they are not kept, or are damaged.
     pub fn open(store: &Store, key: &str) -> Result<Option<Album>, EngineError> {
         let Some(entry) = pack::find(store, "picture", key)? else { return Ok(None) };
-        let Some(bytes) = pack::read::<u8>(&entry, "frames")? else { return Ok(None) };
-        let ends = entry.meta().get("ends").and_then(|v| serde_json::from_value(v.clone()).ok()).unwrap_or_default();
+        let ends: Vec<u64> = entry.meta().get("ends").and_then(|v| serde_json::from_value(v.clone()).ok()).unwrap_or_default();
         let fps = entry.meta().get("fps").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
-        Ok(Some(Album { bytes, ends, fps }))
+        let whole = ends.is_sorted() && ends.last() == Some(&entry.bytes(FRAMES));
+        Ok(if whole && pack::is_sound(&entry, FRAMES)? { Some(Album { entry, ends, fps }) } else { None })
     }
 
     /// Delivers them.
-    pub fn show(&self, sink: &mut dyn Sink, stop: &Stop) {
+    pub fn show(&self, sink: &mut dyn Sink, stop: &Stop) -> Result<(), EngineError> {
+        let mut blob = self.entry.open(FRAMES)?;
         let starts = std::iter::once(0).chain(self.ends.iter().copied());
-        for (index, (start, &end)) in (0u32..).zip(starts.zip(&self.ends)).take_while(|_| !stop.raised()) {
-            let Some(png) = self.bytes.get(start..end) else { break };
-            let Ok(picture) = crate::export::decode_png(png) else { break };
+        for (index, (start, end)) in (0u32..).zip(starts.zip(self.ends.iter().copied())).take_while(|_| !stop.raised()) {
+            let png = self.read(&mut blob, start, end)?;
+            let picture = crate::export::decode_png(&png).map_err(|e| EngineError::Unstable(e.to_string()))?;
             let (size, rgba8) = (picture.size, picture.rgba8.into());
             sink.frame(Frame { index, time_s: f64::from(index) / self.fps, size, rgba8, png: png.into(), depth: None, id: None });
+        }
+        Ok(())
+    }
+
+    fn read(&self, blob: &mut BlobReader, start: u64, end: u64) -> Result<Vec<u8>, EngineError> {
+        let mut png = vec![0; (end - start) as usize];
+        let read = blob.seek(SeekFrom::Start(start)).and_then(|_| blob.read_exact(&mut png));
+        match (read, self.entry.path(FRAMES)) {
+            (Ok(()), _) => Ok(png),
+            (Err(source), path) => Err(StoreError::Io { doing: "read", path: path?, source }.into()),
         }
     }
 }

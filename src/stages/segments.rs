@@ -65,7 +65,7 @@ pub(super) struct SolverTotals {
     /// What is to be known of how it starts: that it does not quite balance, that it starts elsewhere than the spec says.
     #[serde(default)]
     pub said: Vec<String>,
-    /// How often each force gave no number, by name.
+    /// How often each force gave no number, by [`keys::force`]: versions that call it otherwise share the segment.
     #[serde(default)]
     pub undefined: BTreeMap<String, u64>,
     /// The speed at which something was held, the fastest that substeps follow; 0 where nothing was.
@@ -124,14 +124,18 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// Motion of all its frames, one after another; `None` where it was not kept or is damaged.
-    pub fn motion(&self) -> Result<Option<Vec<u8>>, EngineError> {
-        Ok(if self.meta.frame_bytes > 0 { pack::read(&self.entry, "motion")? } else { None })
+    /// Motion of all its frames, one after another, where a frame takes so many bytes; `None` where it was not kept or is
+    /// damaged.
+    pub fn motion(&self, frame_bytes: usize) -> Result<Option<Vec<u8>>, EngineError> {
+        if self.meta.frame_bytes != frame_bytes || frame_bytes == 0 {
+            return Ok(None);
+        }
+        Ok(pack::read(&self.entry, "motion")?.filter(|motion: &Vec<u8>| motion.len() == frame_bytes * self.meta.rows.len()))
     }
 
-    /// The state at its last frame.
-    pub fn checkpoint(&self) -> Result<Vec<u8>, EngineError> {
-        Ok(self.entry.read("checkpoint")?)
+    /// The state at its last frame; `None` where it is damaged.
+    pub fn checkpoint(&self) -> Result<Option<Vec<u8>>, EngineError> {
+        Ok(pack::read(&self.entry, "checkpoint")?)
     }
 }
 

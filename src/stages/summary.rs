@@ -1,6 +1,7 @@
 //! A finished run as `metrics.json` tells it.
 
 use super::engine::Ready;
+use super::keys;
 use super::segments::SolverTotals;
 use super::{EventMetrics, ExpectationResult, MemoryMetrics, Metrics, ObjectMetrics, SolverMetrics, SubstepRange, lookup};
 use crate::gpu::Gpu;
@@ -37,7 +38,7 @@ pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
                 format!("{name}: simulated with at most {value:.2e} {unit} from {from_s:.3} s on, {:.2e} of its {what}: {}", s.factor, s.reason)
             })
             .collect(),
-        undefined: advance.undefined.iter().cloned().collect(),
+        undefined: advance.undefined.iter().filter_map(|(name, times)| Some((key_of(spec, name)?, *times))).collect(),
         limited: advance.limited,
         held_m_s: f64::from(advance.held_m_s),
         mended: advance.mended.iter().map(|(object, times)| (name(*object).to_owned(), *times)).collect(),
@@ -46,9 +47,19 @@ pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
     }
 }
 
+fn key_of(spec: &Spec, force: &str) -> Option<String> {
+    spec.forces.iter().find(|f| f.name == force).map(keys::force)
+}
+
+/// How often each force gave no number, by the name that the spec has for it. Of equal ones the first counts.
+fn undefined(totals: &SolverTotals, spec: &Spec) -> BTreeMap<String, u64> {
+    let name = |key: &String| spec.forces.iter().find(|f| keys::force(f) == *key).map(|f| f.name.clone());
+    totals.undefined.iter().filter_map(|(key, times)| Some((name(key)?, *times))).collect()
+}
+
 /// What forces did otherwise than they were told, in words.
-pub(super) fn of_forces(totals: &SolverTotals) -> Vec<String> {
-    let undefined = totals.undefined.iter().map(|(name, times)| {
+pub(super) fn of_forces(totals: &SolverTotals, spec: &Spec) -> Vec<String> {
+    let undefined = undefined(totals, spec).into_iter().map(|(name, times)| {
         format!("force.{name} gave no number {times} times (a division by zero, a root or logarithm of a negative): it counted as zero there")
     });
     let limited = (totals.limited > 0)
@@ -158,7 +169,7 @@ pub(super) fn metrics(
             nonfinite: totals.nonfinite,
             retries: totals.retries,
             softened: totals.softened.clone(),
-            undefined: totals.undefined.clone(),
+            undefined: undefined(totals, spec),
             limited: totals.limited,
             held_m_s: totals.held_m_s,
             mended: totals.mended.clone(),
@@ -222,5 +233,22 @@ fn expectation(metrics: &Metrics, text: &str) -> ExpectationResult {
         }
         // `Spec::validate` refuses such a condition before anything runs.
         Err(_) => ExpectationResult { text: text.to_owned(), value: None, held: false },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spec::{Force, Until};
+
+    #[test]
+    fn a_force_is_told_of_by_the_name_that_it_has_now() {
+        let mut spec = Spec::of_scene("vase.splat");
+        spec.forces = vec![Force::constant("gale", "vase", 0.1, Until::End, [1.0, 0.0, 0.0]), Force::new("other", "vase", 0.0, Until::End)];
+        let kept = totals(&Advance { undefined: vec![("gale".to_owned(), 3)], ..Advance::default() }, &spec);
+        // Another version shares what was kept of it.
+        (spec.forces[0].name, spec.forces[0].to_s) = ("breeze".to_owned(), Until::Time(2.0));
+        assert_eq!(undefined(&kept, &spec), BTreeMap::from([("breeze".to_owned(), 3)]));
+        assert!(of_forces(&kept, &spec)[0].starts_with("force.breeze gave no number 3 times"));
     }
 }

@@ -1,16 +1,17 @@
 //! As captured, so at rest, as it is seen: Gaussian by Gaussian, from the scene's file to skinning.
 
 use super::engine::Engine;
-use super::{Quality, RunOptions};
-use crate::Stop;
+use super::{EngineError, Player, Quality, RunOptions};
 use crate::gpu::{DeviceRequest, Gpu, Recording};
+use crate::render::{RenderOptions, View};
 use crate::scene::{self, Gaussians};
 use crate::skin::{Skinner, Splats};
-use crate::spec::{Auto, Axis, Material, Spec, Young};
+use crate::spec::{Auto, Axis, Liquid, Material, Spec, Weights, Young};
 use crate::store::Store;
-use crate::world::World;
 use crate::world::bodies::matter;
 use crate::world::measure::MotionFrame;
+use crate::world::{Figure, World};
+use crate::{Discard, Stop};
 use glam::Vec3;
 use std::path::Path;
 
@@ -97,13 +98,75 @@ fn a_twig_thinner_than_the_grid_sees_stands_as_captured() {
 }
 
 #[test]
-fn the_captured_vase_left_alone_stands() {
-    let shared = std::env::var_os("PHYSTALK_SHARED").map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"), Into::into);
-    let scenes = shared.join("scenes");
-    if !scenes.join("vase.splat").exists() {
-        println!("{} has no vase: only the synthetic twig is tested", scenes.display());
-        return;
-    }
-    let moved = seen_moving(&Spec::of_scene("vase.splat"), &scenes, &[50]);
+fn the_vase_of_the_demo_left_alone_stands() {
+    let moved = seen_moving(&scene::demo::spec(), Path::new(""), &[25]);
     assert!(moved.iter().all(|&share| share < 0.01), "{moved:?}");
+}
+
+/// An engine with a store of its own, and the twig for half a second.
+fn twigs(folder: &Path) -> (Engine, Spec) {
+    scene::write(&folder.join("twig.ply"), &twig()).unwrap();
+    let mut spec = Spec::of_scene("twig.ply");
+    spec.scene.up = Auto::Value(Axis::PlusZ);
+    (spec.time.duration_s, spec.time.fps) = (Auto::Value(0.5), 20);
+    spec.solver.cells_across = Auto::Value(10);
+    spec.output.size = Auto::Value([48, 32]);
+    (Engine::new(Store::open(Some(&folder.join("store")), folder).unwrap(), DeviceRequest::default()), spec)
+}
+
+#[test]
+fn a_lost_device_is_opened_anew_by_the_next_turn() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut engine, _) = twigs(folder.path());
+    let gpu = engine.device().unwrap().clone();
+    let size = gpu.device.limits().max_buffer_size + 4;
+    let _ = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("too large"),
+        size,
+        usage: wgpu::BufferUsages::STORAGE,
+        mapped_at_creation: false,
+    });
+    let views = [View::look_at(Vec3::new(0.0, -1.0, 0.3), Vec3::ZERO, 40.0, [32, 32])];
+    assert!(matches!(engine.still(&twig(), &views, &RenderOptions::default()), Err(EngineError::Gpu(_))));
+    assert_eq!(engine.still(&twig(), &views, &RenderOptions::default()).unwrap().len(), 1);
+    assert!(!engine.device().unwrap().is(&gpu));
+}
+
+#[test]
+fn a_player_whose_motion_goes_away_has_fewer_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut engine, spec) = twigs(folder.path());
+    engine.gpu = Some(Gpu::shared_for_tests().unwrap());
+    let options = RunOptions { render: false, ..RunOptions::default() };
+    engine.run(&spec, folder.path(), &options, None, &mut Discard, &Stop::default()).unwrap();
+    let segments = engine.ready(&spec, folder.path(), &options).unwrap().segments;
+    let mut player = engine.player(&spec, folder.path(), &options).unwrap();
+    let (camera, size) = (player.camera, player.size);
+    assert_eq!((segments.len(), player.frames), (2, 11));
+    let mut picture = |player: &mut Player, index| player.picture(&mut engine, index, &camera, size).unwrap().rgba8;
+    let at_5 = picture(&mut player, 5);
+    player.store.clone().remove("motion", &segments[1].key).unwrap();
+    assert!(picture(&mut player, 10) == at_5 && player.frames == 6);
+    player.store.clone().remove("motion", &segments[0].key).unwrap();
+    // What is in memory is still there; what is not begins anew from the scene as captured.
+    player.held = None;
+    picture(&mut player, 0);
+    assert_eq!((player.frames, player.is_behind()), (0, false));
+}
+
+#[test]
+fn with_the_weights_of_the_paper_no_particles_are_drawn_beside_the_gaussians() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut engine, mut spec) = twigs(folder.path());
+    spec.objects[0].material = Material::Liquid(Liquid::default());
+    let gpu = Gpu::shared_for_tests().unwrap();
+    engine.gpu = Some(gpu.clone());
+    let ready = engine.ready(&spec, folder.path(), &RunOptions::default()).unwrap();
+    let solids = engine.solids(&spec, &ready).unwrap().value;
+    let bound = engine.bound(&spec, &ready, &solids).unwrap().value;
+    let prepared = &ready.prepared.value;
+    let matter = matter(&spec, prepared, &solids);
+    let figure = |weights| Figure::new(&gpu, prepared, &bound, &matter, weights).unwrap();
+    let (exact, paper) = (figure(Weights::Exact), figure(Weights::Paper));
+    assert!(exact.suits(&matter, Weights::Exact) && paper.suits(&matter, Weights::Paper) && !paper.suits(&matter, Weights::Exact));
 }

@@ -91,10 +91,15 @@ impl World {
         })
     }
 
-    /// Solves the prestress of every object that stands as captured.
-    pub fn prestress(&mut self, spec: &Spec, stop: &Stop, progress: &mut dyn FnMut(f32)) -> Result<solver::PrestressReport, SolverError> {
+    /// Solves the prestress of every object that stands as captured. What the user should know of it.
+    pub fn prestress(&mut self, spec: &Spec, stop: &Stop, progress: &mut dyn FnMut(f32)) -> Result<Vec<String>, SolverError> {
         let standing: Vec<u32> = (0..spec.objects.len() as u32).filter(|&i| spec.objects[i as usize].rest == Rest::AsCaptured).collect();
-        self.solver.prestress(&standing, stop, progress)
+        let report = self.solver.prestress(&standing, stop, progress)?;
+        let hangs = |&(object, gap_m): &(u32, f32)| {
+            let (name, gap_mm) = (&self.names[object as usize], gap_m * 1e3);
+            format!("{name} hangs {gap_mm:.0} mm above whatever is below it, so nothing carries it as captured: its pose is taken as free of stress")
+        };
+        Ok(report.hanging.iter().map(hangs).chain(report.warnings).collect())
     }
 
     /// Whether every object starts in its captured pose, so that [`World::place`] moves nothing.
@@ -128,6 +133,11 @@ impl World {
     /// The frame that the world is at.
     pub fn frame(&self) -> u32 {
         self.frame
+    }
+
+    /// Seconds since the start.
+    pub fn now_s(&self) -> f64 {
+        self.solver.time_s()
     }
 
     /// Goes on to the next frame: cut at each event on the way, which takes effect at that boundary.

@@ -102,11 +102,32 @@ impl Piece {
             // Of what flows freely nothing can weaken.
             Effect::Weaken(share) if !self.now.substance.flows_freely() => of(self.now.weakened(*share), self.thawed.clone()),
             Effect::Freeze if self.thawed.is_none() => {
-                let solid = if self.now.substance.keeps_shape() { &self.now } else { &self.solid };
-                of(solid.clone(), Some(self.now.clone()))
+                let solid = if self.now.substance.keeps_shape() { self.now.clone() } else { self.solid.frozen_from(&self.now) };
+                of(solid, Some(self.now.clone()))
             }
             Effect::Release => of(self.thawed.clone().unwrap_or(self.now.clone()), None),
             _ => self.clone(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::{Flow, Substance};
+    use crate::spec::ElasticModel;
+
+    #[test]
+    fn what_froze_out_of_water_is_ice_that_looks_like_it_and_thaws_to_water() {
+        let stuff = |substance| Stuff { substance, young_pa: 1e5, poisson: 0.3, density_kg_m3: 1e3 };
+        let water = stuff(Substance::Liquid { viscosity_pa_s: 1e-3, surface_tension_n_m: 0.0 });
+        let ice = stuff(Substance::Elastic(ElasticModel::Corotated));
+        let piece = Piece { now: water.clone(), solid: ice.clone(), thawed: None };
+        let frozen = piece.after(&Effect::Freeze);
+        assert!(frozen.now.substance.keeps_shape() && frozen.now.substance.flow() == Some(Flow::Liquid));
+        assert_eq!(frozen.after(&Effect::Release).now, water);
+        // What kept its shape never flowed.
+        let rubber = Piece { now: ice.clone(), solid: ice.clone(), thawed: None };
+        assert_eq!(rubber.after(&Effect::Freeze).now, ice);
     }
 }

@@ -39,8 +39,8 @@ impl Figure {
     pub fn new(gpu: &Gpu, prepared: &Prepared, bound: &Bound, matter: &Matter, weights: Weights) -> Result<Figure, GpuError> {
         let particles = &matter.particles;
         let rest_m = &particles.position_m;
-        let filling =
-            matter.sheds_shape().then(|| Filling::new(&prepared.gaussians, &prepared.object_of, rest_m, &particles.volume_m3, &particles.object));
+        let filling = is_filled(matter, weights)
+            .then(|| Filling::new(&prepared.gaussians, &prepared.object_of, rest_m, &particles.volume_m3, &particles.object));
         let mut figure = Figure::with_room(gpu, prepared, filling.as_ref().map_or(&[], |_| &particles.object))?;
         let mut skinner = Skinner::new(gpu, &figure.splats, bound, rest_m, weights)?;
         if let Some(filling) = &filling {
@@ -50,9 +50,9 @@ impl Figure {
         Ok(figure)
     }
 
-    /// Whether it can show such matter: particles of what keeps no shape are drawn themselves.
-    pub fn suits(&self, matter: &Matter) -> bool {
-        !matter.sheds_shape() || self.moved.as_ref().is_some_and(|moved| moved.filled)
+    /// Whether it can show such matter.
+    pub fn suits(&self, matter: &Matter, weights: Weights) -> bool {
+        !is_filled(matter, weights) || self.moved.as_ref().is_some_and(|moved| moved.filled)
     }
 
     /// Uploads a scene in the captured pose; nothing can move it.
@@ -121,6 +121,12 @@ impl Figure {
         let ground = Some(GroundLook { height_m: self.ground_m, shadow, pool_m: self.pool_m });
         self.renderer.draw(&self.splats, &view, &RenderOptions { ground, ..RenderOptions::default() })
     }
+}
+
+/// Whether particles of what keeps no shape are drawn themselves. The paper has none of that: its Gaussians are all there is,
+/// and none of them fades.
+fn is_filled(matter: &Matter, weights: Weights) -> bool {
+    matter.sheds_shape() && weights != Weights::Paper
 }
 
 /// Centre and radius of the tone on a plain ground: wide enough for all objects as captured, and it

@@ -29,3 +29,6 @@ pub use resolve::{CELLS_ACROSS_DRAFT, CELLS_ACROSS_FULL, Resolved, resolve};
 pub use seam::{Mark, Seam};
 pub use stuff::Stuff;
 pub use vain::said as asked_in_vain;
+
+/// Raised whenever a spec and its solids give other matter, settings or course of events, or the same motion other pictures.
+pub const VERSION: u32 = 1;

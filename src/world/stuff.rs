@@ -99,6 +99,15 @@ impl Stuff {
         }
     }
 
+    /// This solid as what some stuff that kept no shape froze to: the eye goes on taking it for that.
+    pub fn frozen_from(&self, poured: &Stuff) -> Stuff {
+        let substance = match (&self.substance, poured.substance.flow()) {
+            (Substance::Elastic(model), Some(poured)) => Substance::Frozen { model: *model, poured },
+            _ => self.substance.clone(),
+        };
+        Stuff { substance, ..self.clone() }
+    }
+
     /// The same with less strength: yield stress and cohesion times a share. Its moduli are the solver's to scale.
     pub fn weakened(&self, share: f64) -> Stuff {
         let times = |value: f32| (f64::from(value) * share) as f32;

@@ -3,7 +3,8 @@
 use super::{block, centre_m, solver};
 use crate::Stop;
 use crate::solver::substance::Substance;
-use crate::solver::{Moduli, Plane, Settings, Solver, SolverError};
+use crate::solver::validate::append;
+use crate::solver::{Moduli, Plane, Settings, Solver, SolverError, Taut};
 use glam::Vec3;
 
 const SAND: Substance = Substance::Sand { friction_angle_deg: 30.0, cohesion_pa: 0.0 };
@@ -115,4 +116,25 @@ fn a_weakened_column_sinks_by_as_much_again() {
     }
     let expected = 1000.0 * 9.81 * height_m * height_m / (3.0 * young_pa);
     assert!((sunk / expected - 1.0).abs() < 0.1, "sunk by {sunk} m, expected {expected}");
+}
+
+#[test]
+fn a_lid_on_hardening_is_told_once_from_when_it_is_there() {
+    let snow = Substance::Snow { theta_c: 0.025, theta_s: 0.0075, hardening: 10.0 };
+    let mut particles = block(Vec3::new(0.0, 0.0, 0.1), Vec3::splat(0.1), 0.025, 1.4e5, 0.2);
+    particles.substances = vec![snow.clone()];
+    append(&mut particles, block(Vec3::new(0.5, 0.0, 0.1), Vec3::splat(0.1), 0.025, 1e5, 0.3), Substance::default());
+    let mut solver = solver(Settings { substeps_most: 40, ..Settings::new(0.05) }, &particles);
+    let told = |to_s: f64, solver: &mut Solver| -> Vec<(u32, f64)> {
+        let softened = solver.advance(to_s, &Stop::default()).expect("an advance").softened;
+        softened.iter().filter(|s| s.what == Taut::Hardening).map(|s| (s.object, s.time_s)).collect()
+    };
+    assert_eq!(told(0.02, &mut solver), [(0, 0.0)]);
+    solver.change_material(1, None, Some(&SAND), Moduli::Kept).expect("a change");
+    assert_eq!(told(0.04, &mut solver), []);
+    // What turns to snow then is news, and the snow from before is not.
+    let other = Substance::Snow { theta_c: 0.02, theta_s: 0.0075, hardening: 10.0 };
+    solver.change_material(1, None, Some(&other), Moduli::Young { young_pa: 1.4e5, poisson: 0.2 }).expect("a change");
+    assert_eq!(told(0.06, &mut solver).len(), 1);
+    assert!(solver.laws.stiffenings[0] < f32::MAX);
 }

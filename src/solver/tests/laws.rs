@@ -75,7 +75,7 @@ fn probe(substances: &[Substance], trials: &[DMat3], numbers: &[[f32; 4]]) -> Ve
         &[
             &gpu.storage_from("trials", &columns).expect("room"),
             &gpu.storage_from("numbers", numbers).expect("room"),
-            &gpu.storage_from("substances", &substance::records(substances)).expect("room"),
+            &gpu.storage_from("substances", &substance::records(substances, &vec![f32::MAX; substances.len()])).expect("room"),
             &answers,
             &axes,
         ],

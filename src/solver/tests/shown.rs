@@ -7,7 +7,7 @@ use crate::gpu::{Gpu, Recording};
 use crate::solver::constants::BREATHING;
 use crate::solver::substance::Substance;
 use crate::solver::validate::append;
-use crate::solver::{Placement, Plane, Settings, Solver};
+use crate::solver::{Flow, Moduli, Placement, Plane, Settings, Solver};
 use glam::{Mat3, Quat, Vec3};
 
 /// G and the volume ratio of each particle, as a frame has them.
@@ -124,4 +124,19 @@ fn matter_of_any_law_thrown_hard_at_the_ground_stays_finite() {
         let within = |[least, most]: [f32; 2]| stretch.z > f64::from(least) - 0.01 && stretch.x < f64::from(most) + 0.01;
         assert!(substance.shown_stretch().is_none_or(within), "{substance:?}: {stretch}");
     }
+}
+
+#[test]
+fn what_froze_out_of_a_liquid_is_seen_as_what_it_was() {
+    let water = Substance::Liquid { viscosity_pa_s: 1e-3, surface_tension_n_m: 0.0 };
+    let sand = Substance::Sand { friction_angle_deg: 30.0, cohesion_pa: 0.0 };
+    let mut solver = side_by_side(&[water, sand, Substance::default()], weightless());
+    let flows = |solver: &Solver| -> Vec<f32> { motion(solver).iter().map(|m| half::f16::from_bits((m[7] >> 16) as u16).to_f32()).collect() };
+    let before = flows(&solver);
+    for (object, poured) in [(0, Flow::Liquid), (1, Flow::Grains)] {
+        let ice = Substance::Frozen { model: crate::spec::ElasticModel::Corotated, poured };
+        solver.freeze(object, None, Some(&ice), Moduli::Young { young_pa: 1e5, poisson: 0.3 }).expect("a change");
+    }
+    assert_eq!(flows(&solver), before);
+    assert!([0.0, 1.0, 3.0].iter().all(|flow| before.contains(flow)));
 }

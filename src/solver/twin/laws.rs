@@ -112,7 +112,7 @@ pub fn respond(substance: &Substance, trial: DMat3, m: &Matter, dt_s: f64) -> An
     match substance {
         // No particle of it is ever asked.
         Substance::SphLiquid { .. } => Answer { f: trial, history: m.history, tau: DMat3::ZERO },
-        Substance::Elastic(model) => Answer { f: trial, history: m.history, tau: elastic(model) },
+        Substance::Elastic(model) | Substance::Frozen { model, .. } => Answer { f: trial, history: m.history, tau: elastic(model) },
         // Bodies move their particles; no stress acts on them.
         Substance::Rigid { .. } => Answer { f: trial, history: m.history, tau: DMat3::ZERO },
         Substance::Muscle { model, fibre, .. } => {
