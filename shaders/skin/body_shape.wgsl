@@ -154,9 +154,11 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     let radius_m = RADIUS * own.w * mix(YOUNG, 1.0, state.x);
     var x = own.xyz + seen.inward;
     var c = seen.covariance * (radius_m * radius_m);
-    var colour = mix(mine, seen.colour, state.x);
+    // What is wholly seen is wholly mixed.
+    let shown = smoothstep(0.0, SEEN, state.x);
+    var colour = mix(mine, seen.colour, shown);
     var gloss = GLOSS_PASTE;
-    var opacity = OPACITY * smoothstep(0.0, SEEN, state.x);
+    var opacity = OPACITY * shown;
     if kind == 3u {
         gloss = GLOSS_LIQUID;
         opacity *= 1.0 - CLEAR * max(1.0 - seen.thickness, 0.0);

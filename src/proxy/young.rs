@@ -28,8 +28,8 @@ const THREAD_M: f64 = LOCAL_MOST_PA / (1000.0 * CAPTURE_GRAVITY_M_S2);
 /// And more than this over its reach too, whatever the scale of the scene: a square stem nine times as long as
 /// thick.
 const THREAD_SLENDERNESS: f64 = 500.0;
-/// Share of what it takes to stand firmly with which a place bears what it carries and sways at a touch: one and a half times the bound.
-pub const BEARING: f64 = 1.5 / SAFETY;
+/// Share of what it takes to stand firmly with which a place bears what it carries and sways at a touch: twice the bound.
+pub const BEARING: f64 = 2.0 / SAFETY;
 /// A local value within this factor of the object's is not worth a difference.
 const NOTABLE: f64 = 1.05;
 

@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Version of what skinning computes; part of the keys of pictures.
-pub const VERSION: u32 = 7;
+pub const VERSION: u32 = 8;
 
 /// Threads of a workgroup.
 const GROUP_SIZE: u32 = 128;
@@ -22,7 +22,7 @@ pub const SMALLEST_DETERMINANT: f32 = 1e-3;
 
 /// How far the nearest particle of a Gaussian, where it is drawn itself, has parted from those around it when the Gaussian begins
 /// to fade, and when it is gone.
-pub const FADES: [f32; 2] = [0.3, 0.9];
+pub const FADES: [f32; 2] = [0.2, 0.5];
 
 /// Particles that carry a Gaussian's centre this far from where its nearest one does, in spans, begin
 /// to lose it, and at the second number have lost it. A span is what lies between the particles that a

@@ -138,7 +138,8 @@ pub fn drawn(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Opti
     let look = look(filling, places, flow, i);
     let radius_m = RADIUS * filling.tint[i][3] * mix(YOUNG, 1.0, parted);
     let mine = brought(filling, flow[i], i);
-    let mut opacity = OPACITY * smoothstep([0.0, SEEN], parted);
+    let shown = smoothstep([0.0, SEEN], parted);
+    let mut opacity = OPACITY * shown;
     let (x, c, colour, gloss) = match flow[i] {
         1 => {
             let word = i as u32;
@@ -150,7 +151,7 @@ pub fn drawn(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Opti
         }
         flow => {
             opacity *= if flow == 3 { 1.0 - CLEAR * (1.0 - look.thickness).max(0.0) } else { 1.0 };
-            (places[i] + look.inward, look.covariance * (radius_m * radius_m), mine.lerp(look.colour, parted), GLOSS[flow as usize - 2])
+            (places[i] + look.inward, look.covariance * (radius_m * radius_m), mine.lerp(look.colour, shown), GLOSS[flow as usize - 2])
         }
     };
     let (a, b, d, n) = (c.x_axis, c.y_axis, c.z_axis, look.normal);
