@@ -6,8 +6,8 @@
 @group(0) @binding(1) var<storage, read> order: array<u32>;
 @group(0) @binding(2) var<storage, read> spans: array<u32>;
 @group(0) @binding(3) var<storage, read> sorted: array<vec4<u32>>;
-/// Of each sorted particle, the mean light of what it has come to.
-@group(0) @binding(4) var<storage, read> stirred_light: array<vec4<f32>>;
+/// Of each sorted particle, the mean light of what it has come to, and the middle of what lies around it.
+@group(0) @binding(4) var<storage, read> blended: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> geometry: array<vec4<f32>>;
 /// The first plane of spherical harmonics.
 @group(0) @binding(6) var<storage, read_write> sh: array<vec4<f32>>;
@@ -20,6 +20,8 @@ struct Around {
     // Mean of d d^T about that.
     spread: mat3x3<f32>,
     colour: vec3<f32>,
+    // Mean of the middles of what lies around them, in reaches of one cell: away from a surface.
+    lean: vec3<f32>,
 }
 
 fn around(x: vec3<f32>, cells: i32) -> Around {
@@ -31,6 +33,7 @@ fn around(x: vec3<f32>, cells: i32) -> Around {
     var square = vec3(0.0);
     var mixed = vec3(0.0);
     var light = vec3(0.0);
+    var lean = vec3(0.0);
     for (var c = 0; c < side * side * side; c++) {
         let cell = home + vec3(c % side, c / side % side, c / (side * side)) - vec3(cells);
         let key = key_of(cell);
@@ -49,14 +52,15 @@ fn around(x: vec3<f32>, cells: i32) -> Around {
             first += w * d;
             square += w * d * d;
             mixed += w * d.yzx * d.zxy;
-            light += w * stirred_light[k].xyz;
+            light += w * blended[2u * k].xyz;
+            lean += w * blended[2u * k + 1u].xyz;
         }
     }
     let per = 1.0 / max(volume, 1e-20);
     let mean = first * per;
     let d = square * per - mean * mean;
     let o = mixed * per - mean.yzx * mean.zxy;
-    return Around(volume, mean, mat3x3(d.x, o.z, o.y, o.z, d.y, o.x, o.y, o.x, d.z), sqrt(light * per));
+    return Around(volume, mean, mat3x3(d.x, o.z, o.y, o.z, d.y, o.x, o.y, o.x, d.z), sqrt(light * per), lean * per);
 }
 
 // What a particle looks like.
@@ -84,10 +88,11 @@ fn looked(size_m: f32, here: Around, cells: f32) -> Look {
     let broad = smoothstep(BROAD_LOW, BROAD_HIGH, sqrt(max(axes.values.y, 0.0) / max(axes.values.x, 1e-12)));
     let sheet = (1.0 - smoothstep(THIN_LOW, THIN_HIGH, max(axes.values.z, 0.0) / max(axes.values.y, 1e-12))) * broad * joined;
 
-    // The way out: away from the middle of what is around; in a sheet, across it.
+    // The way out: away from where what is around lies; in a sheet, across it.
     let off = length(here.middle);
-    let outward = -here.middle / max(off, 1e-6);
-    let skin = min(off / SKIN, 1.0) * joined;
+    let leaning = length(here.lean);
+    let outward = -here.lean / max(leaning, 1e-6);
+    let skin = smoothstep(LEAN_LOW, LEAN_HIGH, leaning) * joined;
     let across = axes.least * select(-1.0, 1.0, dot(axes.least, outward) >= 0.0);
     let n = normalize(mix(outward, across, sheet) + vec3(1e-9, 0.0, 0.0));
 

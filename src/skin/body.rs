@@ -55,6 +55,9 @@ pub const FEW: [f32; 2] = [0.22, 0.4];
 /// The middle of what is around a particle of a surface lies so far from it, in reaches: 0.246 if the surface passed through it,
 /// less as it lies half a spacing below.
 pub const SKIN: f32 = 0.14;
+/// The mean of such middles over its neighbours, from which on it may lie at a surface, and at which it does: by how particles
+/// happen to lie it is a few hundredths inside.
+pub const LEAN: [f32; 2] = [0.03, 0.09];
 /// At a surface it is so much wider and thinner, so that it is even.
 pub const FLAT: f32 = 1.25;
 /// Share by which what sticks out of a surface is drawn in.
@@ -200,13 +203,13 @@ impl Body {
         let plan = radix.plan(gpu, &buffers, &extent, places.trailing_zeros() + 1);
         let spans = gpu.storage::<[u32; 2]>("skin.spans", places as usize)?;
         let sorted = gpu.storage::<[u32; 8]>("skin.sorted", count as usize)?;
-        let stirred = gpu.storage::<[f32; 4]>("skin.stirred_light", count as usize)?;
+        let blended = gpu.storage::<[f32; 8]>("skin.blended", count as usize)?;
         let [place, order, stir, shape] = sources().map(|source| gpu.kernel(&source));
         let to = plan.sorted;
         let (keys, values) = (&buffers.keys[to], &buffers.values[to]);
         Ok(Body {
-            stir_bindings: gpu.bind(&stir, &[keys, &spans, &sorted, &stirred]),
-            shape_bindings: gpu.bind(&shape, &[keys, values, &spans, &sorted, &stirred, &splats.geometry, &splats.sh]),
+            stir_bindings: gpu.bind(&stir, &[keys, &spans, &sorted, &blended]),
+            shape_bindings: gpu.bind(&shape, &[keys, values, &spans, &sorted, &blended, &splats.geometry, &splats.sh]),
             place,
             order,
             stir,
@@ -298,6 +301,8 @@ fn constants() -> Vec<(&'static str, Constant)> {
         ("BROAD_HIGH", BROAD[1]),
         ("WIDEST", WIDEST),
         ("SKIN", SKIN),
+        ("LEAN_LOW", LEAN[0]),
+        ("LEAN_HIGH", LEAN[1]),
         ("FLAT", FLAT),
         ("EVEN", EVEN),
         ("THIN_LOW", THIN[0]),

@@ -22,6 +22,7 @@ struct Around {
     middle: Vec3,
     spread: Mat3,
     colour: Vec3,
+    lean: Vec3,
 }
 
 /// Weight of what is `from` a place, given its size.
@@ -46,9 +47,21 @@ pub fn stirred_light(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize)
     light / total
 }
 
+/// Pass `skin.body_stir`: the middle of what lies around a particle, in reaches.
+fn middle(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Vec3 {
+    let reach_m = REACH * filling.spacing_m;
+    let (mut first, mut volume) = (Vec3::ZERO, 0.0);
+    for (j, &x) in places.iter().enumerate().filter(|(j, _)| flow[*j] > 0) {
+        let w = weight(x - places[i], filling.tint[j][3], reach_m);
+        first += (x - places[i]) * (w / reach_m);
+        volume += w;
+    }
+    first / volume
+}
+
 fn around(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize, cells: f32) -> Around {
     let reach_m = cells * REACH * filling.spacing_m;
-    let (mut volume, mut first, mut second, mut light) = (0.0, Vec3::ZERO, Mat3::ZERO, Vec3::ZERO);
+    let (mut volume, mut first, mut second, mut light, mut lean) = (0.0, Vec3::ZERO, Mat3::ZERO, Vec3::ZERO, Vec3::ZERO);
     for (j, &x) in places.iter().enumerate().filter(|(j, _)| flow[*j] > 0) {
         let w = weight(x - places[i], filling.tint[j][3], reach_m);
         if w > 0.0 {
@@ -57,10 +70,12 @@ fn around(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize, cells: f32
             first += d * w;
             second += outer(d, d) * w;
             light += stirred_light(filling, places, flow, j) * w;
+            lean += middle(filling, places, flow, j) * w;
         }
     }
     let mean = first / volume;
-    Around { volume, middle: mean, spread: second * (1.0 / volume) - outer(mean, mean), colour: (light / volume).powf(0.5) }
+    let spread = second * (1.0 / volume) - outer(mean, mean);
+    Around { volume, middle: mean, spread, colour: (light / volume).powf(0.5), lean: lean / volume }
 }
 
 /// What a particle looks like; see `struct Look`.
@@ -86,8 +101,9 @@ fn looked(size_m: f32, here: &Around, cells: f32, filling: &Filling) -> Look {
     let sheet = (1.0 - smoothstep(THIN, values[2].max(0.0) / values[1].max(1e-12))) * broad * joined;
 
     let off = here.middle.length();
-    let outward = -here.middle / off.max(1e-6);
-    let skin = (off / SKIN).min(1.0) * joined;
+    let leaning = here.lean.length();
+    let outward = -here.lean / leaning.max(1e-6);
+    let skin = smoothstep(LEAN, leaning) * joined;
     let across = if least.dot(outward) >= 0.0 { least } else { -least };
     let n = (outward.lerp(across, sheet) + Vec3::X * 1e-9).normalize();
 
