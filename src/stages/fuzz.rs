@@ -23,6 +23,8 @@ const QUICK: u64 = 200;
 const SCENE: &str = "block.ply";
 /// Share of all specs that has to be run: what is refused proves nothing.
 const RUN_LEAST: f64 = 0.8;
+/// And whose energy has a bound: the others do work that nobody sums.
+const JUDGED_LEAST: f64 = 0.1;
 /// Bytes of results that are kept meanwhile.
 const STORE_BYTES: u64 = 256 << 20;
 
@@ -114,16 +116,19 @@ pub fn checks(gpu: &Gpu, size: Size, seeds: Range<u64>, told: &mut dyn FnMut(&Ou
     let none = |name, formula, of| row(name, formula).compare(0.0, share(of), 0.0);
     let least = |name, formula, measured, least: f64| row(name, formula).compare(1.0, measured, 1.0 - least);
     let asked = seeds.end.saturating_sub(seeds.start) as f64;
-    let (judged, eased) = (among(&|o| o.energy_judged), among(&|o| o.cost.retries > 0 || o.cost.softened > 0));
     Ok(vec![
         Check::new("V28 drawn", "all that were asked for", "random specs from the whole schema", "specs").compare(asked, outcomes.len() as f64, 0.0),
         least("V28 run", "at least 80 %, the others refused with a reason", share(|k| !matches!(k, Kind::Refused(_))), RUN_LEAST),
         none("V28 no numbers", "0", |k| matches!(k, Kind::Nonfinite(_))),
         none("V28 through the ground", "0", |k| matches!(k, Kind::Escaped(_))),
         none("V28 energy of nothing", "sqrt(2 E / m) <= sqrt(2 E0 / m) + pushes + a t", |k| matches!(k, Kind::Energy(_))),
-        row("V28 energy judged", "told: no field, muscle or path drives, nothing starts inside a surface").compare(judged, judged, 0.0),
+        least(
+            "V28 energy judged",
+            "at least 10 %: no field, muscle or path drives, none starts inside a surface",
+            among(&|o| o.energy_judged),
+            JUDGED_LEAST,
+        ),
         row("V28 given up", "at most 0.5 %, each with a reason").compare(0.0, share(|k| matches!(k, Kind::GivenUp(_))), 0.005),
-        row("V28 rolled back or softened", "told").compare(eased, eased, 0.0),
     ])
 }
 
