@@ -35,8 +35,7 @@ fn main(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) group
         bodies[b].velocity.w = 0.0;
         if (first != 0xffffffffu) {
             bodies[b].velocity = body_pinned(place_of(b, first), shapes[b].object);
-        }
-        if (first == 0xffffffffu) {
+        } else {
             // A push may have been faster than what is followed.
             let followed = followed_share(bodies[b], shapes[b], bodies[b].velocity.xyz);
             bodies[b].velocity = vec4<f32>(bodies[b].velocity.xyz * followed, 0.0);
