@@ -35,26 +35,27 @@ fn blurred(layer: u32, place: vec2<f32>, sigma: f32) -> f32 {
     return mix(smooth_at(layer, lower, place), smooth_at(layer, lower + 1u, place), level - f32(lower));
 }
 
-/// 1 where one cell of the static surface lets light through to a height, 0 far below the surface.
-fn cell_open(map: Map, cell: vec2<i32>, z: f32) -> f32 {
+/// 1 where one cell of a slot's static surface lets light through to a height, 0 far below the surface.
+fn cell_open(map: Map, slot: u32, cell: vec2<i32>, z: f32) -> f32 {
     if any(cell < vec2(0)) || any(cell >= vec2(i32(ROOF_SIDE))) {
         return 1.0;
     }
-    let top = roof[u32(cell.y) * ROOF_SIDE + u32(cell.x)];
+    let top = roof[(slot * ROOF_SIDE + u32(cell.y)) * ROOF_SIDE + u32(cell.x)];
     if top == 0u {
         return 1.0;
     }
     return 1.0 - smoothstep(0.5, 1.0, (from_ordered(top) - z) / (map.texel * ROOF_TEXELS));
 }
 
-/// 1 where a point is open to the light, 0 below a static surface, between them over a cell.
-fn reached(map: Map, p: vec3<f32>) -> f32 {
-    let s = (p.xy - map.origin) / (map.texel * ROOF_TEXELS) - 0.5;
-    let cell = vec2<i32>(floor(s));
-    let f = s - floor(s);
-    let near = mix(cell_open(map, cell, p.z), cell_open(map, cell + vec2(1, 0), p.z), f.x);
-    let far = mix(cell_open(map, cell + vec2(0, 1), p.z), cell_open(map, cell + vec2(1, 1), p.z), f.x);
-    return mix(near, far, f.y);
+/// That of the four cells around a place, in cells.
+fn slot_open(map: Map, slot: u32, place: vec2<f32>, z: f32) -> vec4<f32> {
+    let cell = vec2<i32>(floor(place));
+    return vec4(
+        cell_open(map, slot, cell, z),
+        cell_open(map, slot, cell + vec2(1, 0), z),
+        cell_open(map, slot, cell + vec2(0, 1), z),
+        cell_open(map, slot, cell + vec2(1, 1), z),
+    );
 }
 
 /// The factor on the colour of a point: 1 in full light, 1 - DARKNESS where nothing of it arrives.
@@ -64,6 +65,11 @@ fn shade_at(map: Map, p: vec3<f32>) -> f32 {
     if edge <= 0.0 {
         return 1.0;
     }
+    let cells = (p.xy - map.origin) / (map.texel * ROOF_TEXELS) - 0.5;
+    let f = cells - floor(cells);
+    let share = vec4(1.0 - f.x, f.x, 1.0 - f.x, f.x) * vec4(vec2(1.0 - f.y), vec2(f.y));
+    // What lies below a static surface has lost the light of the layers above that already.
+    var open = slot_open(map, 0u, cells, p.z);
     // Layers that hide different parts of the cone multiply; layers that hide the same part count
     // once. A thing's layers lie between the two, and so does the mean.
     var apart = 1.0;
@@ -72,14 +78,18 @@ fn shade_at(map: Map, p: vec3<f32>) -> f32 {
         let bottom = boundary(map, layer);
         let top = boundary(map, layer + 1u);
         let above = clamp((top - p.z) / (top - bottom), 0.0, 1.0);
+        if above <= 0.0 {
+            continue;
+        }
+        open = min(open, slot_open(map, layer + 1u, cells, p.z));
         // The last level is one number: what the whole layer covers.
-        if above > 0.0 && pyramid[(layer + 1u) * PYRAMID_SIZE - 1u] > 0.0 {
+        if pyramid[(layer + 1u) * PYRAMID_SIZE - 1u] > 0.0 {
             let rise = 0.5 * (top + max(bottom, p.z)) - p.z;
-            let passed = 1.0 - above * blurred(layer, place, SPREAD * rise / map.texel);
+            let passed = 1.0 - above * dot(open, share) * blurred(layer, place, SPREAD * rise / map.texel);
             apart *= passed;
             together = min(together, passed);
         }
     }
     let light = sqrt(apart * together);
-    return 1.0 - DARKNESS * (1.0 - light) * smoothstep(0.0, 1.0, edge) * reached(map, p);
+    return 1.0 - DARKNESS * (1.0 - light) * smoothstep(0.0, 1.0, edge);
 }

@@ -7,7 +7,8 @@
 //! and it follows whatever the thing does. All of it is made anew each frame from the geometry that
 //! skinning wrote.
 //!
-//! Light that was captured is in the colours already: static Gaussians cast nothing onto each other.
+//! Light that was captured is in the colours already: static Gaussians cast nothing onto each other, and what lies below one
+//! (a floor below a table) is shaded by the layers between the two only.
 
 pub mod twin;
 
@@ -19,7 +20,7 @@ use crate::skin::Splats;
 use bytemuck::{Pod, Zeroable};
 
 /// Version of what the contact shadow computes; part of the keys of pictures.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Texels along a side of the map, a power of two.
 pub const SIDE: u32 = 128;
@@ -66,6 +67,12 @@ const ROOF_REACH: f32 = 3.0;
 
 /// Static Gaussians fainter than this are no surface.
 const ROOF_OPACITY: f32 = 0.3;
+
+/// Nor are those that stand: variance along the vertical over that along both others, 0.5 of a ball, 1 of an upright disc.
+const ROOF_STEEP: f32 = 0.75;
+
+/// Slots of the static surface's map: below all casters, and of each layer.
+const ROOF_SLOTS: u32 = LAYERS + 1;
 
 /// Threads of a workgroup: of most passes, and of the bounds.
 const GROUP_SIZE: u32 = 64;
@@ -115,7 +122,7 @@ impl Shadow {
     /// map stretches to hold all), `receivers` those that do not, `ground_m` the plain ground's height.
     pub fn new(gpu: &Gpu, splats: &Splats, casters: &[u32], receivers: &[u32], ground_m: Option<f32>) -> Result<Shadow, GpuError> {
         let texels = (SIDE * SIDE) as usize;
-        let roof_cells = (SIDE / ROOF_TEXELS * (SIDE / ROOF_TEXELS)) as usize;
+        let roof_cells = (SIDE / ROOF_TEXELS * (SIDE / ROOF_TEXELS) * ROOF_SLOTS) as usize;
         let caster = gpu.storage_from("shadow.casters", casters)?;
         let receiver = gpu.storage_from("shadow.receivers", receivers)?;
         let bounds = gpu.storage::<u32>("shadow.bounds", 6)?;
@@ -254,6 +261,7 @@ fn constants() -> Vec<(&'static str, Constant)> {
         ("ROOF_SIDE", Constant::U32(SIDE / ROOF_TEXELS)),
         ("ROOF_REACH", Constant::F32(ROOF_REACH)),
         ("ROOF_OPACITY", Constant::F32(ROOF_OPACITY)),
+        ("ROOF_STEEP", Constant::F32(ROOF_STEEP)),
         ("GROUP_SIZE", Constant::U32(GROUP_SIZE)),
         ("BOUNDS_GROUP", Constant::U32(BOUNDS_GROUP)),
         ("BOUNDS_GROUPS", Constant::U32(BOUNDS_GROUPS)),

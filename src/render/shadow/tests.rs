@@ -142,6 +142,27 @@ fn a_table_keeps_its_floor_in_the_light() {
 }
 
 #[test]
+fn a_table_keeps_its_floor_in_the_light_when_some_of_it_falls_off() {
+    let mut scene = scene(Vec3::Z * 0.55, true);
+    let whole = twin(&scene, None);
+    // A few that lie on the floor beside the table cast a shadow there, and the ball above none below the table.
+    for i in 0..20 {
+        scene.gaussians.mean[i] = Vec3::new(0.7 + 0.005 * i as f32, 0.0, 0.01);
+    }
+    let partly = twin(&scene, None);
+    for i in 0..100 {
+        let p = Vec3::new((i % 10) as f32 * 0.08 - 0.36, (i / 10) as f32 * 0.08 - 0.36, 0.0);
+        assert!(whole.shade(p) > 0.99 && partly.shade(p) > 0.99, "{p}: {} {}", whole.shade(p), partly.shade(p));
+    }
+    assert!(partly.shade(Vec3::new(0.75, 0.0, 0.0)) < 0.8 && partly.shade(Vec3::Z * 0.5) < 0.6);
+    let (records, _) = on_device(&scene, None);
+    for &receiver in &scene.receivers {
+        let record = &records[receiver as usize];
+        assert!((record[10] - partly.shade(Vec3::from_slice(record))).abs() < 2e-3);
+    }
+}
+
+#[test]
 fn nothing_that_moves_leaves_all_in_the_light() {
     let mut scene = scene(Vec3::ZERO, false);
     scene.casters.clear();

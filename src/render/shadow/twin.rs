@@ -1,8 +1,8 @@
 //! The contact shadow in plain Rust, pass by pass.
 
 use super::{
-    DARKNESS, DEPTH_UNIT, LARGEST_DEPTH, LAYERS, LEVELS, MAP_EDGE, ROOF_OPACITY, ROOF_REACH, ROOF_TEXELS, SIDE, SMALLEST_TEXEL, SPREAD, TEXEL_STEPS,
-    WIDEST_TENT,
+    DARKNESS, DEPTH_UNIT, LARGEST_DEPTH, LAYERS, LEVELS, MAP_EDGE, ROOF_OPACITY, ROOF_REACH, ROOF_SLOTS, ROOF_STEEP, ROOF_TEXELS, SIDE,
+    SMALLEST_TEXEL, SPREAD, TEXEL_STEPS, WIDEST_TENT,
 };
 use glam::{Vec2, Vec3};
 
@@ -18,7 +18,8 @@ pub struct ShadowTwin {
     map: Map,
     /// `[layer][level]`, rows along x.
     pyramid: Vec<Vec<Vec<f32>>>,
-    roof: Vec<Option<f32>>,
+    /// `[slot][cell]`, rows along x.
+    roof: Vec<Vec<Option<f32>>>,
 }
 
 /// Where the map lies.
@@ -39,8 +40,9 @@ impl ShadowTwin {
         let map = Map::around(low, high, ground_m);
         let mut depth = vec![vec![0u32; (SIDE * SIDE) as usize]; LAYERS as usize];
         casters.iter().for_each(|caster| map.splat(caster, &mut depth));
-        let mut roof = vec![None; (ROOF_SIDE * ROOF_SIDE) as usize];
-        receivers.iter().filter(|r| r[3] >= ROOF_OPACITY && r[2] <= map.low + map.texel).for_each(|r| map.cover(r, &mut roof));
+        let mut roof = vec![vec![None; (ROOF_SIDE * ROOF_SIDE) as usize]; ROOF_SLOTS as usize];
+        let lies = |r: &&Record| r[3] >= ROOF_OPACITY && r[2] <= map.low + map.height + map.texel && r[9] <= ROOF_STEEP * (r[4] + r[7]);
+        receivers.iter().filter(lies).for_each(|r| map.cover(r, &mut roof[map.slot_of(r[2])]));
         Some(ShadowTwin { map, pyramid: depth.iter().map(|layer| pyramid(layer)).collect(), roof })
     }
 
@@ -52,31 +54,46 @@ impl ShadowTwin {
             return 1.0;
         }
         let (mut apart, mut together) = (1.0, 1.0f32);
+        let mut open = self.slot_open(0, p);
         for (layer, levels) in self.pyramid.iter().enumerate() {
             let (bottom, top) = (self.map.boundary(layer as u32), self.map.boundary(layer as u32 + 1));
             let above = ((top - p.z) / (top - bottom)).clamp(0.0, 1.0);
-            if above > 0.0 && levels[LEVELS as usize - 1][0] > 0.0 {
+            if above <= 0.0 {
+                continue;
+            }
+            open = std::array::from_fn(|k| open[k].min(self.slot_open(layer + 1, p)[k]));
+            if levels[LEVELS as usize - 1][0] > 0.0 {
                 let rise = 0.5 * (top + bottom.max(p.z)) - p.z;
-                let passed = 1.0 - above * blurred(levels, place, SPREAD * rise / self.map.texel);
+                let passed = 1.0 - above * self.share(open, p) * blurred(levels, place, SPREAD * rise / self.map.texel);
                 apart *= passed;
                 together = together.min(passed);
             }
         }
         let light = (apart * together).sqrt();
-        1.0 - DARKNESS * (1.0 - light) * smoothstep(0.0, 1.0, edge) * self.reached(p)
+        1.0 - DARKNESS * (1.0 - light) * smoothstep(0.0, 1.0, edge)
     }
 
-    fn reached(&self, p: Vec3) -> f32 {
-        let s = (p.truncate() - self.map.origin) / self.map.cell_m() - 0.5;
-        let (cell, f) = (s.floor().as_ivec2(), s - s.floor());
+    /// Whether the four cells around a place let light of a slot through.
+    fn slot_open(&self, slot: usize, p: Vec3) -> [f32; 4] {
+        let cell = self.cells(p).floor().as_ivec2();
         let open = |x: i32, y: i32| {
             let (x, y) = (cell.x + x, cell.y + y);
             let inside = x >= 0 && y >= 0 && x < ROOF_SIDE && y < ROOF_SIDE;
-            let top = if inside { self.roof[(y * ROOF_SIDE + x) as usize] } else { None };
+            let top = if inside { self.roof[slot][(y * ROOF_SIDE + x) as usize] } else { None };
             top.map_or(1.0, |top| 1.0 - smoothstep(0.5, 1.0, (top - p.z) / self.map.cell_m()))
         };
+        [open(0, 0), open(1, 0), open(0, 1), open(1, 1)]
+    }
+
+    fn cells(&self, p: Vec3) -> Vec2 {
+        (p.truncate() - self.map.origin) / self.map.cell_m() - 0.5
+    }
+
+    /// What four cells say at a place between them.
+    fn share(&self, of: [f32; 4], p: Vec3) -> f32 {
+        let f = self.cells(p) - self.cells(p).floor();
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        mix(mix(open(0, 0), open(1, 0), f.x), mix(open(0, 1), open(1, 1), f.x), f.y)
+        mix(mix(of[0], of[1], f.x), mix(of[2], of[3], f.x), f.y)
     }
 }
 
@@ -105,6 +122,10 @@ impl Map {
     fn layer_of(&self, z: f32) -> usize {
         let t = ((z - self.low) / self.height).clamp(0.0, 1.0).sqrt();
         ((t * LAYERS as f32) as usize).min(LAYERS as usize - 1)
+    }
+
+    fn slot_of(&self, z: f32) -> usize {
+        if z <= self.low + self.texel { 0 } else { self.layer_of(z) + 1 }
     }
 
     fn cell_m(&self) -> f32 {
