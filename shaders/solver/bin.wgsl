@@ -1,5 +1,5 @@
-// Sort, first pass: counts the particles of each block, and marks the blocks that they may reach before
-// the next sort.
+// Sort, first pass: counts the particles of each block, numbers them in whatever order they come, and marks the blocks
+// that they may reach before the next sort.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
@@ -7,6 +7,7 @@
 // Two words a block of the window: particles, and whether it is active.
 @group(0) @binding(3) var<storage, read_write> block_info: array<atomic<u32>>;
 @group(0) @binding(4) var<storage, read_write> control: Control;
+@group(0) @binding(5) var<storage, read_write> number_in_block: array<u32>;
 
 // Stencil and slack span two blocks along each axis, or three: bits of the 3^3 around the particle's own.
 fn reached(at: vec3<u32>, low: vec3<u32>, high: vec3<u32>) -> u32 {
@@ -54,9 +55,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
         let speaker = subgroupMin(select(0xffffffffu, lane, waits));
         let block = subgroupShuffle(mine, speaker);
         let counts = waits && all(mine == block);
-        let together = subgroupAdd(select(0u, 1u, counts));
+        let one = select(0u, 1u, counts);
+        let together = subgroupAdd(one);
+        let before = subgroupExclusiveAdd(one);
+        var number = 0u;
         if (lane == speaker) {
-            atomicAdd(&block_info[2u * block.x], together);
+            number = atomicAdd(&block_info[2u * block.x], together);
+        }
+        number = subgroupShuffle(number, speaker) + before;
+        if (counts) {
+            number_in_block[id.x] = number;
         }
         reach_together(subgroupShuffle(at, speaker), subgroupOr(select(0u, bits, counts)), block.y, lane, lanes);
         waits = waits && !counts;

@@ -54,6 +54,9 @@ fn moved(i: u32, m: Matter, gathered: Gathered, alive: bool) -> Moved {
     for (var k = params.collider_count; k > 0u; k--) {
         let c = k - 1u;
         let t = touch(colliders[c], x);
+        if (t.distance_m >= max(label.z, 0.0)) {
+            continue;
+        }
         let before_m = touch(colliders[c], position.xyz).distance_m;
         let nearest_m = select(rest_m, clamp(before_m, 0.0, max(label.z, 0.0)), slips);
         if (t.distance_m < nearest_m) {

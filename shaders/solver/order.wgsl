@@ -39,14 +39,6 @@ fn undealt(slot: u32, item: vec2<u32>) -> u32 {
     return item.x + 8u * (past % length) + select(0u, item.y & 7u, late) + past / length;
 }
 
-fn hand_on(from_slot: u32, to_slot: u32) {
-    let n = params.count;
-    for (var plane = 0u; plane < 4u; plane++) {
-        kinematics_out[plane * n + to_slot] = kinematics[plane * n + from_slot];
-        matter_out[plane * n + to_slot] = matter[plane * n + from_slot];
-    }
-}
-
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let n = params.count;

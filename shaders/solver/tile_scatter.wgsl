@@ -92,6 +92,24 @@ fn drop_slab(l: Load, node: u32, first: vec3<f32>, w: Weights, share: f32, numbe
     drop_row(l, node + 2u * TILE_ROW, first + 2.0 * l.spread[1], w.x * (w.y.z * share), number + 2u);
 }
 
+fn mark_node(l: Load, node: u32, d: vec3<f32>) {
+    let ground = mark_on(l.ground, d);
+    let solid = mark_on(l.solid, d);
+    if (ground != 0u) {
+        atomicMax(&touched_ground[node], ground);
+    }
+    if (solid != 0u) {
+        atomicMax(&touched_solid[node], solid);
+    }
+}
+
+// Marks on a row of three nodes along x, of which the first lies `d` from the particle.
+fn mark_row(l: Load, node: u32, d: vec3<f32>) {
+    mark_node(l, node, d);
+    mark_node(l, node + 1u, d + vec3<f32>(1.0, 0.0, 0.0));
+    mark_node(l, node + 2u, d + vec3<f32>(2.0, 0.0, 0.0));
+}
+
 // Written out: a loop stays a loop.
 fn drop_in_tile(l: Load, place: vec3<f32>, start: u32) {
     let w = spline(place);
@@ -102,18 +120,10 @@ fn drop_in_tile(l: Load, place: vec3<f32>, start: u32) {
     if ((l.ground.mark | l.solid.mark) == 0u) {
         return;
     }
-    for (var k = 0u; k < 27u; k++) {
-        let at = vec3<u32>(k % 3u, k / 3u % 3u, k / 9u);
-        let d = vec3<f32>(at) - place;
-        let node = start + at.z * TILE_SLAB + at.y * TILE_ROW + at.x;
-        let ground = mark_on(l.ground, d);
-        let solid = mark_on(l.solid, d);
-        if (ground != 0u) {
-            atomicMax(&touched_ground[node], ground);
-        }
-        if (solid != 0u) {
-            atomicMax(&touched_solid[node], solid);
-        }
+    for (var k = 0u; k < 9u; k++) {
+        let y = k % 3u;
+        let z = k / 3u;
+        mark_row(l, start + z * TILE_SLAB + y * TILE_ROW, vec3<f32>(0.0, f32(y), f32(z)) - place);
     }
 }
 

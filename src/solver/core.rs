@@ -112,6 +112,7 @@ pub struct Solver {
     /// Whether anything is soft: without it the grid is not used.
     pub(super) soft: bool,
     pub(super) slots: wgpu::Buffer,
+    pub(super) number_in_block: wgpu::Buffer,
     /// Rows of F0^-1 in the original order.
     pub(super) unstressed: wgpu::Buffer,
     motion: wgpu::Buffer,
@@ -190,6 +191,7 @@ impl Solver {
             rigid,
             soft: states.iter().any(|s| !s.is_rigid()),
             slots: gpu.storage::<[u32; 4]>("solver.slots", n)?,
+            number_in_block: gpu.storage::<u32>("solver.number_in_block", n)?,
             unstressed: gpu.storage_from("solver.unstressed", &vec![rows(Mat3::IDENTITY); n])?,
             motion: gpu.storage::<[u32; 8]>("solver.motion", n)?,
             velocity: gpu.storage::<[f32; 4]>("solver.frame_velocity", n)?,

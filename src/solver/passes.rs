@@ -56,13 +56,14 @@ macro_rules! passes {
 passes! {
     /// The passes of MLS-MPM; [`super::transfer`] has those that depend on the device.
     Passes;
-    bin: ["control", "cell", "bin"] [Read, Read, Read, Write, Write] 0;
+    bin: ["control", "cell", "bin"] [Read, Read, Read, Write, Write, Write] 0;
     scan_sums: ["chunk", "scan", "scan_sums"] [Read, Read, Write] 0;
     scan_blocks: ["control", "chunk", "scan", "scan_blocks"] [Write, Write, Read, Write, Write, Write, Write, Write] 0;
     count: ["cell", "count"] [Read, Read, Read, Write] 0;
     scan_cells: ["control", "scan", "scan_cells"] [Read, Read, Read, Read, Write, Write, Write] 0;
     scatter: ["cell", "scatter"] [Read, Read, Read, Write, Read, Write] 0;
-    order: ["control", "order"] [Read, Read, Read, Read, Write, Write, Read, Read, Write, Read] 0;
+    order: ["control", "hand_on", "order"] [Read, Read, Read, Read, Write, Write, Read, Read, Write, Read] 0;
+    regroup: ["control", "cell", "hand_on", "regroup"] [Read, Read, Read, Write, Write, Read, Read, Write] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
     grid: ["control", "substep", "contact", "node", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;

@@ -27,6 +27,7 @@ pub(super) struct Bound {
     scan_cells: wgpu::BindGroup,
     scatter: wgpu::BindGroup,
     order: wgpu::BindGroup,
+    regroup: wgpu::BindGroup,
     pub stress: wgpu::BindGroup,
     pub grid: wgpu::BindGroup,
     pub transfers: TransferBound,
@@ -50,7 +51,11 @@ impl Solver {
             self.rigid.iter().zip(&bound[self.current].rigid).for_each(|(r, b)| r.record_start(b, &substep, recording));
         }
         if self.soft && sorts {
-            self.record_sort(&bound[self.current], recording);
+            let b = &bound[self.current];
+            match step > 0 && self.regroups() {
+                true => self.record_regroup(b, recording),
+                false => self.record_sort(b, recording),
+            }
             self.current = 1 - self.current;
         }
         let b = &bound[self.current];
@@ -114,6 +119,18 @@ impl Solver {
         recording.dispatch(&self.passes.order, &b.order, groups);
     }
 
+    /// Whether it is enough that the particles of a block lie together: where nobody asks for those of a cell, nor adds up in
+    /// their order.
+    fn regroups(&self) -> bool {
+        self.transfers.by_block() && self.sph().is_none() && self.rigid.is_none()
+    }
+
+    /// Puts the particles of each block together again and stores the blocks that they may reach.
+    pub(super) fn record_regroup(&self, b: &Bound, recording: &mut Recording) {
+        self.record_blocks(b, recording);
+        recording.dispatch(&self.passes.regroup, &b.regroup, self.particle_groups());
+    }
+
     /// Finds the blocks that the particles may reach, and where each is stored.
     pub(super) fn record_blocks(&self, b: &Bound, recording: &mut Recording) {
         let blocks = self.params.blocks.iter().product::<u32>() * self.params.layers;
@@ -155,7 +172,7 @@ impl Solver {
             active_groups: grid.active_groups.clone(),
             fields: self.fields.as_ref().map(|f| f.bind(self, state, When::Now)),
             encounter: self.encounter.as_ref().map(|e| e.bind(self, grid)),
-            bin: gpu.bind(&p.bin, &[params, kinematics, matter, &grid.block_info, control]),
+            bin: gpu.bind(&p.bin, &[params, kinematics, matter, &grid.block_info, control, &self.number_in_block]),
             scan_sums: gpu.bind(&p.scan_sums, &[params, &grid.block_info, &grid.chunk_sums]),
             scan_blocks: gpu.bind(
                 &p.scan_blocks,
@@ -180,6 +197,8 @@ impl Solver {
                     &grid.cell_start,
                 ],
             ),
+            regroup: gpu
+                .bind(&p.regroup, &[params, kinematics, matter, &other.kinematics, &other.matter, &grid.block_start, &self.number_in_block, control]),
             stress: gpu.bind(&p.stress, &stress[..if laws.all { 6 } else { 5 }]),
             grid: gpu.bind(&p.grid, &on_grid),
             liquid: self.bind_liquid(grid, state),

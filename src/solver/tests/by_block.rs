@@ -69,6 +69,53 @@ fn the_sort_deals_the_particles_of_a_block_out_by_cell() {
     }
 }
 
+/// A scene whose particles went two thirds of a cell since their last sort, put together again by one of two ways.
+fn put_together_by(way: fn(&Solver, &Bound, &mut Recording)) -> Solver {
+    let (mut solver, _) = scene_on(&as_gpu(), elastic());
+    solver.params.item_particles = 40;
+    solver.start_segment();
+    sort(&mut solver);
+    let step_m = solver.params.cell_m * 2.0 / 3.0;
+    solver.edit(|state| state.position_m += Vec3::new(step_m, -step_m, step_m)).expect("an edit");
+    solver.start_segment();
+    let bound = solver.bind_both().expect("bound");
+    run(|r| way(&solver, &bound[solver.current], r));
+    solver.current = 1 - solver.current;
+    solver
+}
+
+#[test]
+fn a_block_s_particles_come_together_in_any_order_and_count_the_same() {
+    let [sorted, regrouped] = [put_together_by(Solver::record_sort), put_together_by(Solver::record_regroup)];
+    let n = sorted.particle_count() as usize;
+    let originals = |solver: &Solver| -> Vec<u32> {
+        let matter: Vec<[f32; 4]> = gpu().read(&solver.buffers[solver.current].matter, 4 * n).expect("matter");
+        matter[3 * n..].iter().map(|label| label[0].to_bits()).collect()
+    };
+    let items = |solver: &Solver| -> Vec<[u32; 4]> {
+        let listed = &solver.grid.as_ref().expect("a grid").items;
+        let number = gpu().read::<[u32; 4]>(listed, 1).expect("their number")[0][0] as usize;
+        gpu().read(listed, number + 1).expect("items")
+    };
+    let (before, after) = (originals(&sorted), originals(&regrouped));
+    assert!(items(&sorted) == items(&regrouped) && items(&sorted).len() > 10);
+    assert_ne!(before, after, "the scene's order is that of its cells already: nothing was tested");
+    let mut blocks: Vec<(u32, u32, u32)> = items(&sorted)[1..].iter().map(|&[_, block, first, end]| (block, first, end)).collect();
+    blocks.dedup_by(|next, block| {
+        next.0 == block.0 && {
+            block.2 = next.2;
+            true
+        }
+    });
+    for (block, first, end) in blocks {
+        let [mut one, mut other] = [&before, &after].map(|order| order[first as usize..end as usize].to_vec());
+        one.sort_unstable();
+        other.sort_unstable();
+        assert_eq!(one, other, "block {block}");
+    }
+    assert!(sums(&sorted) == sums(&regrouped));
+}
+
 /// Sums and marks of the grid after a substep's first half.
 fn sums(solver: &Solver) -> (Vec<[i32; 4]>, Vec<[u32; 2]>) {
     let bound = solver.bind_both().expect("bound");
