@@ -1,6 +1,9 @@
 // Liquids: brings J back to the density that the particles really have. Integrated from the velocity
 // gradient alone, J drifts from it, and liquid slowly loses volume or gains it. Inside the liquid, and
 // wherever it is denser than J says, J goes towards that density, slowly, so that no sound comes of it.
+//
+// Inside is where it is about as full all around. That is nowhere so at a surface, in a thin sheet, a thread or a drop, but
+// it is in a heap that fell together with gaps: there J comes to be that of the gaps, so that no pressure holds them open.
 
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> kinematics: array<vec4<f32>>;
@@ -14,6 +17,7 @@ struct Density {
     sum: f32,
     weight: f32,
     least: f32,
+    most: f32,
 }
 
 fn taste(d: Density, node: u32, weight: f32) -> Density {
@@ -21,7 +25,7 @@ fn taste(d: Density, node: u32, weight: f32) -> Density {
     if (full < 0.0) {
         return d;
     }
-    return Density(d.sum + weight * full, d.weight + weight, min(d.least, full));
+    return Density(d.sum + weight * full, d.weight + weight, min(d.least, full), max(d.most, full));
 }
 
 @compute @workgroup_size(WORKGROUP)
@@ -38,7 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let s = stencil(position.xyz, base, vec3<u32>(first));
-    var d = Density(0.0, 0.0, 1e9);
+    var d = Density(0.0, 0.0, 1e9, 0.0);
     for (var k = 0u; k < 9u; k++) {
         let r = row(s, k);
         d = taste(d, r.nodes.x, r.weights.x);
@@ -46,8 +50,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         d = taste(d, r.nodes.z, r.weights.z);
     }
     let j = determinant(read_deformation(i));
-    let really = d.weight / max(d.sum, 1e-6);
-    if (!(j > 0.0) || (d.least < FULL && really >= j)) {
+    let really = clamp(d.weight / max(d.sum, 1e-6), LIQUID_J_LEAST, LIQUID_J_LOOSE);
+    let inside = d.least >= FULL * min(d.most, 1.0);
+    if (!(j > 0.0) || (!inside && really >= j)) {
         return;
     }
     let sound_m_s = sqrt(matter[n + i].w * matter[2u * n + i].w / position.w);

@@ -167,8 +167,10 @@ pub const FIELD_SPEED: f32 = crate::spec::limits::SPEED_M_S as f32;
 pub const FIELD_STIFFEST: f32 = 1e4;
 /// J of a liquid goes no lower.
 pub const LIQUID_J_LEAST: f32 = 0.3;
-/// Nor higher: stretched liquid bears nothing, and closes up at once when it comes together.
+/// Nor higher by what stretches it: it closes up at once when it comes together.
 pub const LIQUID_J_MOST: f32 = 1.02;
+/// But where it is seen to have gaps, up to this: gaps that nothing holds open.
+pub const LIQUID_J_LOOSE: f32 = 2.5;
 /// Elastic strain that a thick liquid holds for a moment, at most.
 pub const LIQUID_STRAIN_MOST: f32 = 0.3;
 /// A liquid's elastic strain that shrinks with the flow is lost so many times faster than it shrinks.
@@ -181,8 +183,8 @@ pub const USUAL_STEP_S: f32 = 1e-4;
 pub const FILL_UNITS: f32 = 1_048_576.0;
 /// Where less of a node's spline is on the free side of walls, the node counts for nothing.
 pub const ROOM_LEAST: f32 = 0.02;
-/// Liquid whose nodes are all as full as this is inside. Elsewhere it is only ever made denser, which noise drives on:
-/// at 0.8 what floats sinks by a millimetre a second.
+/// Liquid whose nodes are all as full as this, as a share of the fullest of them, is inside. Elsewhere it is only ever made
+/// denser, which noise drives on: at 0.8 what floats sinks by a millimetre a second.
 pub const FULL: f32 = 0.6;
 /// Share of the difference in density that liquid makes up in the time that sound takes through a cell.
 pub const CALM: f32 = 0.008;
@@ -320,6 +322,7 @@ pub fn all() -> Vec<(&'static str, Constant)> {
         ("SLIPS", Constant::U32(SLIPS)),
         ("LIQUID_J_LEAST", Constant::F32(LIQUID_J_LEAST)),
         ("LIQUID_J_MOST", Constant::F32(LIQUID_J_MOST)),
+        ("LIQUID_J_LOOSE", Constant::F32(LIQUID_J_LOOSE)),
         ("LIQUID_STRAIN_MOST", Constant::F32(LIQUID_STRAIN_MOST)),
         ("RECOIL", Constant::F32(RECOIL)),
         ("CUBE_ROOT_STEPS", Constant::U32(CUBE_ROOT_STEPS)),

@@ -321,6 +321,8 @@ impl Substance {
             // What a soft solid was squeezed by would burst it as a liquid: it takes its volume back in
             // its own time, as its density is seen.
             Substance::Liquid { .. } => (Mat3::from_diagonal(Vec3::splat(f.determinant().clamp(0.98, LIQUID_J_MOST).cbrt())), 0.0),
+            // Nobody strained a liquid by the gaps that it has.
+            _ if before.is_liquid() => (f * (LIQUID_J_MOST / f.determinant().max(LIQUID_J_MOST)).cbrt(), self.first_history()),
             _ => (f, self.first_history()),
         }
     }

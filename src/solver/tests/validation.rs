@@ -55,6 +55,8 @@ quick_cases! {
     v19_hydrostatic: "V19";
     v20_viscous: "V20";
     v22_laplace: "V22";
+    a_hanging_thread: "thread";
+    loose_liquid: "loose";
     v26_liquid_same_bits: "V26 liquid";
     v18_dam_break_of_particles: "V18 SPH";
     v19_pool_of_particles: "V19 SPH";

@@ -2,8 +2,8 @@
 
 use super::material::kirchhoff;
 use crate::solver::constants::{
-    LIQUID_J_LEAST, LIQUID_J_MOST, LIQUID_SHOWN_S, LIQUID_STRAIN_MOST, LOOSE_MOST, PACKING_LEAST, PACKING_MOST, RECOIL, STRETCH_LEAST, STRETCH_MOST,
-    YIELD_FLOOR,
+    LIQUID_J_LEAST, LIQUID_J_LOOSE, LIQUID_J_MOST, LIQUID_SHOWN_S, LIQUID_STRAIN_MOST, LOOSE_MOST, PACKING_LEAST, PACKING_MOST, RECOIL,
+    STRETCH_LEAST, STRETCH_MOST, YIELD_FLOOR,
 };
 use crate::solver::substance::Substance;
 use crate::spec::ElasticModel;
@@ -180,7 +180,9 @@ pub fn respond(substance: &Substance, trial: DMat3, m: &Matter, dt_s: f64) -> An
             answer
         }
         Substance::Liquid { viscosity_pa_s, .. } => {
-            let j = trial.determinant().clamp(f64::from(LIQUID_J_LEAST), f64::from(LIQUID_J_MOST));
+            let before = trial.determinant() / (DMat3::IDENTITY + m.gradient * dt_s).determinant().max(0.1);
+            let most = before.clamp(f64::from(LIQUID_J_MOST), f64::from(LIQUID_J_LOOSE));
+            let j = trial.determinant().clamp(f64::from(LIQUID_J_LEAST), most);
             let relaxing = dt_s * m.lambda / f64::from(*viscosity_pa_s).max(1e-30);
             let (s, axes) = stretches(trial);
             let stretch = principal(axes, s);
@@ -192,7 +194,8 @@ pub fn respond(substance: &Substance, trial: DMat3, m: &Matter, dt_s: f64) -> An
             let lasting = if growing < 0.0 { (1.0 + f64::from(RECOIL) * growing).max(0.0) } else { 1.0 };
             let bounded = if trial.determinant() > 0.0 { lasting.min(f64::from(LIQUID_STRAIN_MOST) / square.sqrt()) } else { 0.0 };
             let shape = DMat3::IDENTITY + strain * bounded;
-            let tau = DMat3::IDENTITY * (m.lambda * (j - 1.0).min(0.0)) + strain * (bounded * 2.0 * m.lambda * j);
+            let size = 2.0 * j * bounded * square.sqrt();
+            let tau = DMat3::IDENTITY * (m.lambda * (j - 1.0).min(size)) + strain * (bounded * 2.0 * m.lambda * j);
             Answer { f: shape * (j / shape.determinant()).cbrt(), history: m.history, tau }
         }
     }

@@ -1,7 +1,7 @@
 //! `liquid_*.wgsl`: what is poured on the nodes and what follows from it, by sums over all nodes.
 
 use super::{Grid, Surroundings, stencil};
-use crate::solver::constants::{CALM, FILM_RESOLVED, FULL, ROOM_LEAST, SURFACE_LEAST};
+use crate::solver::constants::{CALM, FILM_RESOLVED, FULL, LIQUID_J_LEAST, LIQUID_J_LOOSE, ROOM_LEAST, SURFACE_LEAST};
 use crate::solver::obstacles::ColliderRecord;
 use crate::solver::state::ParticleState;
 use crate::solver::substance::Substance;
@@ -123,7 +123,9 @@ impl<'a> Fields<'a> {
             stencil(s.position_m, params).into_iter().filter_map(|(node, weight, _)| Some((self.full(node)?, f64::from(weight)))).collect();
         let j = f64::from(s.f().determinant());
         let really = seen.iter().map(|(_, w)| w).sum::<f64>() / seen.iter().map(|(f, w)| f * w).sum::<f64>();
-        if seen.iter().any(|&(f, _)| f < f64::from(FULL)) && really >= j {
+        let really = really.clamp(f64::from(LIQUID_J_LEAST), f64::from(LIQUID_J_LOOSE));
+        let most = seen.iter().map(|&(f, _)| f).fold(0.0, f64::max);
+        if seen.iter().any(|&(f, _)| f < f64::from(FULL) * most.min(1.0)) && really >= j {
             return j;
         }
         let sound_m_s = f64::from(s.lambda_pa * s.volume_m3 / s.mass_kg).sqrt();

@@ -20,6 +20,7 @@ mod sph;
 mod sph_drops;
 mod spread;
 mod strained;
+mod thick;
 mod waves;
 
 #[cfg(test)]
@@ -173,6 +174,8 @@ pub const CASES: &[Case] = &[
     Case { name: "V20 SPH", quick: true, run: sph::poiseuille },
     Case { name: "V21 SPH", quick: false, run: sph_drops::swinging },
     Case { name: "V22 SPH", quick: true, run: sph_drops::laplace },
+    Case { name: "thread", quick: true, run: thick::thread },
+    Case { name: "loose", quick: true, run: thick::loose },
     Case { name: "spread", quick: false, run: spread::grid },
     Case { name: "spread SPH", quick: false, run: spread::sph },
     Case { name: "V23", quick: false, run: coupling::floating },
