@@ -9,19 +9,22 @@ fn liquid_pull(node: Node) -> vec4<f32> {
     return select(vec4<f32>(0.0), pull[stored(vec3<u32>(node.cell), 0u)], wet);
 }
 
-// Whether a wall brakes the liquid of a node: along one without friction any liquid slips.
-fn wets(mark: u32, x: vec3<f32>, node: u32) -> bool {
+// Whether a wall brakes the liquid or paste of a node: along one without friction any slips. Solids of a wet
+// layer have nothing poured.
+fn wets(mark: u32, x: vec3<f32>, at: Node) -> bool {
     let c = colliders[(mark & 1023u) >> 3u];
+    let node = stored(vec3<u32>(at.cell), 0u);
     let near = film[node].y > 0.0 || touch(c, x).distance_m <= 0.5 * params.cell_m;
-    return near && (mark & SLIPS) != 0u && c.surface.x > 0.0;
+    let paste = ((params.wet_layers >> at.layer) & 1u) != 0u && pull[node].w > 0.0;
+    return near && ((mark & SLIPS) != 0u || paste) && c.surface.x > 0.0;
 }
 
-// What a wall's friction leaves of a liquid's velocity: rough turbulent flow is braked by f / 8 rho v^2
+// What a wall's friction leaves of its velocity: rough turbulent flow is braked by f / 8 rho v^2
 // (Darcy and Weisbach), a film that is too thin for the grid by 3 mu v / h besides (Nusselt 1916).
 // By backward Euler, which can but brake.
 fn braked(v: vec3<f32>, mark: u32, x: vec3<f32>, at: Node) -> vec3<f32> {
     let node = stored(vec3<u32>(at.cell), 0u);
-    if (!wets(mark, x, node)) {
+    if (!wets(mark, x, at)) {
         return v;
     }
     let normal = surface_normal(colliders[(mark & 1023u) >> 3u], mark & 7u, x);
@@ -37,7 +40,7 @@ fn braked(v: vec3<f32>, mark: u32, x: vec3<f32>, at: Node) -> vec3<f32> {
 // cell soon enough, hardly where it is thin, nor where it is a film that brakes as a whole.
 fn held_by(mark: u32, x: vec3<f32>, at: Node) -> f32 {
     let node = stored(vec3<u32>(at.cell), 0u);
-    if (!wets(mark, x, node) || film[node].y > 0.0) {
+    if (!wets(mark, x, at) || film[node].y > 0.0) {
         return 0.0;
     }
     let rate = pull[node].w * params.per_m * params.per_m;

@@ -1,4 +1,4 @@
-// Liquids to grid: the rest volume around each node in volumes of a cell, and that volume's surface
+// Liquids and pastes to grid: the rest volume around each node in volumes of a cell, and that volume's surface
 // tension over density and kinematic viscosity, in fixed point.
 
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -15,6 +15,15 @@ fn pour(node: u32, amount: vec3<f32>) {
     atomicAdd(&fill[3u * node + 2u], whole.z);
 }
 
+// 1, surface tension and viscosity of what clings to walls.
+fn wetness(s: Substance) -> vec3<f32> {
+    switch (s.kind) {
+        case LIQUID: { return vec3<f32>(1.0, s.values[1], s.values[0]); }
+        case VISCOPLASTIC: { return vec3<f32>(sign(s.values[1]), 0.0, s.values[1]); }
+        default: { return vec3<f32>(0.0); }
+    }
+}
+
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (id.x >= params.count) {
@@ -26,7 +35,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let position = kinematics[i];
     let base = base_node(position.xyz);
     let first = base - params.origin;
-    if (substance.kind != LIQUID || !in_window(first)) {
+    let wet = wetness(substance);
+    if (wet.x == 0.0 || !in_window(first)) {
         return;
     }
     let volume = matter[2u * n + i].w;
@@ -34,8 +44,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let share = volume * params.per_m * params.per_m * params.per_m;
     let amount = share * vec3<f32>(
         FILL_UNITS,
-        substance.values[1] * per_density * params.tension_units,
-        substance.values[0] * per_density * params.viscosity_units,
+        wet.y * per_density * params.tension_units,
+        wet.z * per_density * params.viscosity_units,
     );
     let s = stencil(position.xyz, base, vec3<u32>(first));
     for (var k = 0u; k < 9u; k++) {

@@ -28,10 +28,11 @@ fn nearest(first: u32, end: u32, x: vec3<f32>, rest_m: f32, shears: bool) -> Nea
 
 // The mark on a node `d` cells away. Only the nodes beside and below the particle carry its contact: those
 // above it are the body's own, and the layer that they would stiffen is half a cell thinner without them.
-// Those above a liquid are told that it is there: a mark from out of reach stops nothing.
+// Those above a liquid or a paste are told that it is there: a mark from out of reach stops nothing.
 fn mark_on(near: Near, d: vec3<f32>) -> u32 {
     if (near.mark == 0u || dot(near.normal, d) <= 0.5) {
         return near.mark;
     }
-    return select(0u, pack_mark(params.reach_m, near.mark & 2047u), (near.mark & SLIPS) != 0u);
+    let told = (near.mark & SLIPS) != 0u || params.wet_layers != 0u;
+    return select(0u, pack_mark(params.reach_m, near.mark & 2047u), told);
 }

@@ -30,18 +30,18 @@ pub(super) struct Layers {
     pub count: u32,
     /// By object, those beyond [`DEALT`] as the ones so many before them; none of what has no part in the grid.
     of: Vec<Option<u32>>,
-    /// Bits of the layers that hold liquid.
+    /// Bits of the layers that hold what clings to walls.
     wet: u32,
 }
 
 impl Layers {
     /// One for each object with matter on the grid. Rigid bodies, and liquids beside the grid, meet others without it.
     pub fn deal(settings: &Settings, states: &[ParticleState], substances: &[Substance]) -> Layers {
-        let (mut on_grid, mut liquid) = ([false; DEALT as usize], [false; DEALT as usize]);
+        let (mut on_grid, mut wet) = ([false; DEALT as usize], [false; DEALT as usize]);
         for state in states.iter().filter(|s| !s.is_rigid()) {
             let (object, substance) = ((state.object() % DEALT) as usize, substances.get(state.substance()));
             on_grid[object] |= !substance.is_some_and(Substance::is_sph);
-            liquid[object] |= substance.is_some_and(Substance::is_liquid);
+            wet[object] |= substance.is_some_and(|s| s.clings_pa_s().is_some());
         }
         let objects = on_grid.iter().filter(|&&on| on).count() as u32;
         let count = if settings.glued { 1 } else { objects.clamp(1, MOST_LAYERS) };
@@ -53,7 +53,7 @@ impl Layers {
                 on.then(|| (next - 1) % count)
             })
             .collect();
-        let wet = of.iter().zip(liquid).filter(|(_, liquid)| *liquid).filter_map(|(layer, _)| *layer).fold(0, |bits, layer| bits | 1 << layer);
+        let wet = of.iter().zip(wet).filter(|(_, wet)| *wet).filter_map(|(layer, _)| *layer).fold(0, |bits, layer| bits | 1 << layer);
         Layers { count, of, wet }
     }
 

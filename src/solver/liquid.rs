@@ -1,6 +1,8 @@
 //! What liquids need beside their law: their density, and their surface tension, on the grid. Every few
 //! substeps they are poured onto the nodes; J is brought back to the density found there, and the pull of
 //! the surface is worked out that the grid's pass applies until the next sort.
+//!
+//! Pastes are poured too: they cling to walls as liquids do, and yield inside.
 
 use super::advance::Substep;
 use super::budget;
@@ -14,7 +16,7 @@ use super::types::SolverError;
 use crate::gpu::{Gpu, Recording};
 
 passes! {
-    /// Passes that only scenes with a liquid have; `grid_wet` takes the place of `grid`.
+    /// Passes that only scenes with something wet have; `grid_wet` takes the place of `grid`.
     LiquidPasses;
     grid_wet: ["control", "substep", "contact", "node", "pin", "grid_wet", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Read, Read] SUBSTEP;
     liquid_wall: ["contact", "node", "wall", "liquid_wall"] [Read, Read, Read, Write] 0;
@@ -63,9 +65,9 @@ pub(super) struct LiquidBound {
 }
 
 impl Solver {
-    /// Makes the passes where the table has a liquid for the first time.
+    /// Makes the passes where the table has something wet for the first time.
     pub(super) fn wet(&mut self, substances: &[Substance]) {
-        if self.liquid.is_some() || !substances.iter().any(Substance::is_liquid) {
+        if self.liquid.is_some() || !substances.iter().any(|s| s.clings_pa_s().is_some()) {
             return;
         }
         let passes = LiquidPasses::new(&self.gpu);
@@ -92,9 +94,10 @@ impl Solver {
     fn scale_liquids(&mut self, states: &[ParticleState]) {
         let (mut tension, mut viscosity) = (0f32, 0f32);
         for state in states {
-            if let Some(Substance::Liquid { viscosity_pa_s, surface_tension_n_m }) = self.laws.substances.get(state.substance()) {
+            let substance = self.laws.substances.get(state.substance());
+            if let Some((substance, viscosity_pa_s)) = substance.and_then(|s| Some((s, s.clings_pa_s()?))) {
                 let per_density = state.volume_m3 / state.mass_kg;
-                tension = tension.max(surface_tension_n_m * per_density);
+                tension = tension.max(substance.tension_n_m() * per_density);
                 viscosity = viscosity.max(viscosity_pa_s * per_density);
             }
         }

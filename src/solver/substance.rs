@@ -222,6 +222,23 @@ impl Substance {
         matches!(self, Substance::Liquid { .. })
     }
 
+    /// Its dynamic viscosity, Pa s, where it is one that clings to walls: liquids on the grid, and pastes that are viscous.
+    pub(super) fn clings_pa_s(&self) -> Option<f32> {
+        match self {
+            Substance::Liquid { viscosity_pa_s, .. } => Some(*viscosity_pa_s),
+            Substance::Viscoplastic { viscosity_pa_s, .. } => Some(*viscosity_pa_s).filter(|viscosity| *viscosity > 0.0),
+            _ => None,
+        }
+    }
+
+    /// Its surface tension on the grid, N/m.
+    pub(super) fn tension_n_m(&self) -> f32 {
+        match self {
+            Substance::Liquid { surface_tension_n_m, .. } => *surface_tension_n_m,
+            _ => 0.0,
+        }
+    }
+
     /// Whether the plain passes do, which know nothing but the elastic law; bodies have their own.
     pub(super) fn is_plain(&self) -> bool {
         matches!(self, Substance::Elastic(_) | Substance::Frozen { .. } | Substance::Rigid { .. }) || self.is_sph()

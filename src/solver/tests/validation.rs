@@ -57,6 +57,7 @@ quick_cases! {
     v22_laplace: "V22";
     a_hanging_thread: "thread";
     loose_liquid: "loose";
+    paste_on_a_slope: "paste";
     v26_liquid_same_bits: "V26 liquid";
     v18_dam_break_of_particles: "V18 SPH";
     v19_pool_of_particles: "V19 SPH";

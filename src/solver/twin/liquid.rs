@@ -26,7 +26,11 @@ pub type Pool = BTreeMap<[i32; 3], Poured>;
 pub fn pool(states: &[ParticleState], around: &Surroundings) -> Pool {
     let mut pool = Pool::new();
     for s in states {
-        let Substance::Liquid { viscosity_pa_s, surface_tension_n_m } = around.substances[s.substance()] else { continue };
+        let (viscosity_pa_s, surface_tension_n_m) = match around.substances[s.substance()] {
+            Substance::Liquid { viscosity_pa_s, surface_tension_n_m } => (viscosity_pa_s, surface_tension_n_m),
+            Substance::Viscoplastic { viscosity_pa_s, .. } if viscosity_pa_s > 0.0 => (viscosity_pa_s, 0.0),
+            _ => continue,
+        };
         let density = f64::from(s.mass_kg / s.volume_m3);
         for (node, weight, _) in stencil(s.position_m, &around.params) {
             let amount = f64::from(weight) * f64::from(s.volume_m3) * f64::from(around.params.per_m).powi(3);

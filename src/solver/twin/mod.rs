@@ -106,7 +106,7 @@ pub fn p2g(states: &[ParticleState], around: &Surroundings) -> Grid {
                 let Some((value, normal)) = found else { continue };
                 if normal.dot(d) <= 0.5 {
                     *mark = (*mark).max(value);
-                } else if value & SLIPS != 0 {
+                } else if value & SLIPS != 0 || params.wet_layers != 0 {
                     *mark = (*mark).max(1 << 11 | (value & 2047));
                 }
             }
@@ -180,11 +180,12 @@ fn respond(v: Vec3, mark: u32, x: Vec3, around: &Surroundings, dt_s: f32) -> Vec
     normal * leaving + if speed > grip { sliding * (1.0 - grip / speed) } else { Vec3::ZERO }
 }
 
-/// Whether a wall brakes the liquid of a node.
+/// Whether a wall brakes the liquid or paste of a node.
 fn wets(mark: u32, x: Vec3, around: &Surroundings, node: &Node) -> bool {
     let collider = &around.colliders[(mark & 1023) as usize >> 3];
     let near = node.film_m[1] > 0.0 || collider.touch(x).distance_m <= 0.5 * around.params.cell_m;
-    near && mark & SLIPS != 0 && collider.surface[0] > 0.0
+    let paste = around.params.wet_layers != 0 && node.viscosity_m2_s > 0.0;
+    near && (mark & SLIPS != 0 || paste) && collider.surface[0] > 0.0
 }
 
 /// What a wall's friction leaves of a liquid's velocity.

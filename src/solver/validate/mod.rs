@@ -176,6 +176,7 @@ pub const CASES: &[Case] = &[
     Case { name: "V22 SPH", quick: true, run: sph_drops::laplace },
     Case { name: "thread", quick: true, run: thick::thread },
     Case { name: "loose", quick: true, run: thick::loose },
+    Case { name: "paste", quick: true, run: thick::paste },
     Case { name: "spread", quick: false, run: spread::grid },
     Case { name: "spread SPH", quick: false, run: spread::sph },
     Case { name: "V23", quick: false, run: coupling::floating },

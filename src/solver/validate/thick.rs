@@ -1,10 +1,11 @@
-//! Thick liquids that are pulled long, and that lie loosely: both keep the volume that they have.
+//! Thick liquids that are pulled long, and that lie loosely: both keep the volume that they have. Pastes that run down a wall.
 
 use super::Check;
-use super::bodies::{pool, walls};
+use super::bodies::{block, pool, walls};
 use crate::Stop;
 use crate::gpu::Gpu;
 use crate::solver::core::Solver;
+use crate::solver::state::ParticleState;
 use crate::solver::substance::{Substance, liquid_bulk_pa};
 use crate::solver::types::{PinRegion, Plane, Settings, SolverError};
 use crate::spec::{ColliderShape, PlaneShape};
@@ -76,4 +77,34 @@ pub(super) fn loose(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let check = |name| Check::new(name, "V / A", "a liquid has no gaps: what holds them open is air, which escapes", "m");
     let ([honey, honey_m], [lava, lava_m]) = (settled_m(gpu, 10.0, 1420.0, 1.0)?, settled_m(gpu, 150.0, 2600.0, 1.0)?);
     Ok(vec![check("loose honey closes up").compare(honey, honey_m, 0.04), check("loose lava closes up").compare(lava, lava_m, 0.04)])
+}
+
+/// A deep layer of paste on a slope: it sticks to the wall, shears where the stress is over its yield stress, and the rest
+/// rides on that as a plug.
+pub(super) fn paste(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
+    let (yield_pa, viscosity_pa_s, young_pa, drive_m_s2, density_kg_m3) = (350.0, 100.0, 2e5, 4.9, 1000.0f64);
+    let size_m = Vec3::new(48.0, 2.0, 8.0) * CELL_M;
+    let mut layer = block(Vec3::ZERO, size_m, 0.5 * CELL_M, young_pa, 0.4);
+    layer.substances = vec![Substance::Viscoplastic { yield_stress_pa: yield_pa, viscosity_pa_s }];
+    let mut settings = Settings::new(CELL_M);
+    settings.ground = Some(Plane { height_m: 0.0, friction: 0.5, restitution: 0.0 });
+    settings.colliders = walls(Vec3::ZERO, size_m).into_iter().skip(2).collect();
+    settings.gravity_m_s2 = Vec3::new(drive_m_s2, 0.0, -8.5);
+    let mut solver = Solver::new(gpu, settings, &layer)?;
+    solver.advance(0.35, &Stop::default())?;
+    let middle = |x: Vec3| (x.x / size_m.x - 0.5).abs() < 0.1;
+    let states = solver.states()?;
+    let speed = |from: f32, to: f32| {
+        let of = |s: &&ParticleState| middle(layer.position_m[s.index as usize]) && (from..to).contains(&(s.position_m.z / size_m.z));
+        let speeds: Vec<f64> = states.iter().filter(of).map(|s| f64::from(s.velocity_m_s.x)).collect();
+        speeds.iter().sum::<f64>() / speeds.len() as f64
+    };
+    let (deep_m, weight) = (f64::from(size_m.z), density_kg_m3 * f64::from(drive_m_s2));
+    // Sheared up to this height.
+    let sheared_m = deep_m - f64::from(yield_pa) / 3f64.sqrt() / weight;
+    let plug_m_s = 0.5 * weight / f64::from(viscosity_pa_s) * sheared_m * sheared_m;
+    let rides = Check::new("paste runs down a slope", "rho g sin a (h - tau / (rho g sin a))^2 / (2 eta), its plug", "Bingham 1922", "m/s");
+    let shears = Check::new("paste sticks to a wall", "1 - (1 - z / hs)^2 of that at z = h / 8, hs the height that shears", "Bingham 1922", "1");
+    let lowest = 1.0 - (1.0 - deep_m / 8.0 / sheared_m).powi(2);
+    Ok(vec![rides.compare(plug_m_s, speed(0.75, 0.95), 0.1), shears.compare(lowest, speed(1.0 / 16.0, 3.0 / 16.0) / speed(0.75, 0.95), 0.15)])
 }
