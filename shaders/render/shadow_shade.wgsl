@@ -44,7 +44,9 @@ fn cell_open(map: Map, slot: u32, cell: vec2<i32>, z: f32) -> f32 {
     if top == 0u {
         return 1.0;
     }
-    return 1.0 - smoothstep(0.5, 1.0, (from_ordered(top) - z) / (map.texel * ROOF_TEXELS));
+    // Within a cell a surface is not level.
+    let cell_m = map.texel * ROOF_TEXELS;
+    return 1.0 - smoothstep(0.5, 1.0, (from_ordered(top) - z) / clamp(0.5 * map.height, 0.5 * cell_m, cell_m));
 }
 
 /// That of the four cells around a place, in cells.

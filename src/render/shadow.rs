@@ -20,7 +20,7 @@ use crate::skin::Splats;
 use bytemuck::{Pod, Zeroable};
 
 /// Version of what the contact shadow computes; part of the keys of pictures.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Texels along a side of the map, a power of two.
 pub const SIDE: u32 = 128;

@@ -80,7 +80,8 @@ impl ShadowTwin {
             let (x, y) = (cell.x + x, cell.y + y);
             let inside = x >= 0 && y >= 0 && x < ROOF_SIDE && y < ROOF_SIDE;
             let top = if inside { self.roof[slot][(y * ROOF_SIDE + x) as usize] } else { None };
-            top.map_or(1.0, |top| 1.0 - smoothstep(0.5, 1.0, (top - p.z) / self.map.cell_m()))
+            let uneven_m = (0.5 * self.map.height).clamp(0.5 * self.map.cell_m(), self.map.cell_m());
+            top.map_or(1.0, |top| 1.0 - smoothstep(0.5, 1.0, (top - p.z) / uneven_m))
         };
         [open(0, 0), open(1, 0), open(0, 1), open(1, 1)]
     }
