@@ -11,7 +11,8 @@ fn lit(colour: vec3<f32>, normal: vec3<f32>, gloss: f32, look: vec3<f32>) -> vec
     let away = look - 2.0 * dot(look, n) * n;
     let grazing = 1.0 - abs(dot(look, n));
     let grazing2 = grazing * grazing;
-    let mirrored = gloss * sure * (MIRROR + (1.0 - MIRROR) * grazing2 * grazing2 * grazing);
+    // What shines more than water does so where it is looked at straight; along it everything is a mirror.
+    let mirrored = sure * (gloss * MIRROR + min(gloss, 1.0) * (1.0 - MIRROR) * grazing2 * grazing2 * grazing);
     let room = mix(ROOM_BELOW, ROOM_ABOVE, smoothstep(-0.3, 0.8, away.z));
     let window = WINDOW * smoothstep(WINDOW_EDGE, WINDOW_CORE, dot(away, vec3(WINDOW_X, WINDOW_Y, WINDOW_Z)));
     return mix(matt, vec3(room + window), min(mirrored, 1.0));

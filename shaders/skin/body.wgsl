@@ -14,6 +14,8 @@ struct Immediates {
     first: u32,
     // Keys are below this and one; what keeps its shape has the next.
     mask: u32,
+    // Gaussians of each particle: of what is grains several.
+    grains: u32,
 }
 var<immediate> params: Immediates;
 

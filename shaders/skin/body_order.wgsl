@@ -5,12 +5,12 @@
 @group(0) @binding(2) var<storage, read> motion: array<PackedDelta>;
 /// Its own colour, display-referred, and its size in metres.
 @group(0) @binding(3) var<storage, read> tint: array<vec4<f32>>;
-/// The colour of its surroundings: what flows brings that along.
+/// The colour of its surroundings: what flows brings that along. And how clear it is as a liquid.
 @group(0) @binding(4) var<storage, read> dye: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read> parted: array<f32>;
 /// First and one past the last of each key; zeros where there is none.
 @group(0) @binding(6) var<storage, read_write> spans: array<u32>;
-/// (x, y, z, size), (colour, parted and how it flows as halves).
+/// (x, y, z, size), (colour, parted and how it flows as halves: between 3 and 3.5 a liquid, the clearer the more).
 @group(0) @binding(7) var<storage, read_write> sorted: array<vec4<u32>>;
 
 @compute @workgroup_size(GROUP_SIZE)
@@ -31,5 +31,5 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     let flow = unpack2x16float(motion[i].b.w).y;
     let colour = select(own.xyz, dye[i].xyz, flow > 1.5);
     sorted[2u * k] = vec4(motion[i].a.xyz, bitcast<u32>(own.w));
-    sorted[2u * k + 1u] = vec4(bitcast<vec3<u32>>(colour), pack2x16float(vec2(parted[i], flow)));
+    sorted[2u * k + 1u] = vec4(bitcast<vec3<u32>>(colour), pack2x16float(vec2(parted[i], flow + select(0.0, 0.5 * dye[i].w, flow > 2.5))));
 }

@@ -1,6 +1,6 @@
 // One thread a sorted particle: its Gaussian. Where it lies among others its shape follows how they lie (after Yu and Turk
 // 2013): a disc along a surface, wider and thinner where a sheet spreads, longer and thinner in a thread; alone it is a drop.
-// None covers more than its volume.
+// What lies loosely is widened until it closes; a clear liquid lets the more light through the less of it there is.
 
 @group(0) @binding(0) var<storage, read> keys: array<u32>;
 @group(0) @binding(1) var<storage, read> order: array<u32>;
@@ -33,6 +33,7 @@ fn around(x: vec3<f32>, cells: i32) -> Around {
     var square = vec3(0.0);
     var mixed = vec3(0.0);
     var light = vec3(0.0);
+    var lit = 0.0;
     var lean = vec3(0.0);
     for (var c = 0; c < side * side * side; c++) {
         let cell = home + vec3(c % side, c / side % side, c / (side * side)) - vec3(cells);
@@ -52,7 +53,9 @@ fn around(x: vec3<f32>, cells: i32) -> Around {
             first += w * d;
             square += w * d * d;
             mixed += w * d.yzx * d.zxy;
-            light += w * blended[2u * k].xyz;
+            let shines = (1.0 - apart2) * cubed(there.w / reach_m);
+            light += shines * blended[2u * k].xyz;
+            lit += shines;
             lean += w * blended[2u * k + 1u].xyz;
         }
     }
@@ -60,7 +63,7 @@ fn around(x: vec3<f32>, cells: i32) -> Around {
     let mean = first * per;
     let d = square * per - mean * mean;
     let o = mixed * per - mean.yzx * mean.zxy;
-    return Around(volume, mean, mat3x3(d.x, o.z, o.y, o.z, d.y, o.x, o.y, o.x, d.z), sqrt(light * per), lean * per);
+    return Around(volume, mean, mat3x3(d.x, o.z, o.y, o.z, d.y, o.x, o.y, o.x, d.z), sqrt(light / max(lit, 1e-20)), lean * per);
 }
 
 // What a particle looks like.
@@ -75,6 +78,10 @@ struct Look {
     thickness: f32,
     // Its radius over that of its volume.
     full: f32,
+    // How many times farther apart than where they fill the room those of a body lie.
+    loose: f32,
+    // 0 alone.
+    joined: f32,
     colour: vec3<f32>,
 }
 
@@ -82,7 +89,6 @@ fn looked(size_m: f32, here: Around, cells: f32) -> Look {
     let reach_m = cells * params.reach_m;
     let own = cubed(size_m / reach_m) / here.volume;
     let axes = principal(here.spread);
-    // 0 alone.
     let joined = 1.0 - smoothstep(ALONE_LOW, ALONE_HIGH, own);
     // 0 in a thread, 1 in a sheet or a body.
     let broad = smoothstep(BROAD_LOW, BROAD_HIGH, sqrt(max(axes.values.y, 0.0) / max(axes.values.x, 1e-12)));
@@ -102,6 +108,8 @@ fn looked(size_m: f32, here: Around, cells: f32) -> Look {
     let apart = mix(THREAD * cells * own, cells * sqrt(SHEET * own), broad);
     let held = min(mix(1.0, max(apart, 1.0) * spare, mix(joined, sheet, broad)), WIDEST);
     let full = mix(1.0, spare, joined * (1.0 - sheet) * broad);
+    // Half of the room around what is at a surface is empty.
+    let gaps = clamp(cells * pow(BALL * own * (1.0 - 0.5 * skin), 1.0 / 3.0), 1.0, LOOSEST);
     let flat = 1.0 + (FLAT - 1.0) * max(skin, sheet);
     let across_r = mix(inverseSqrt(held), held, broad) * flat * full;
     let thickness = max(mix(inverseSqrt(held), 1.0 / (held * held), broad), THINNEST);
@@ -113,7 +121,7 @@ fn looked(size_m: f32, here: Around, cells: f32) -> Look {
     let longer = max(held * held - across_r * across_r, 0.0) * (1.0 - broad) * joined;
     let c = unit * (across_r * across_r) - through * (across_r * across_r - thin_r * thin_r) + along * longer;
     let inward = here.middle * (reach_m * EVEN * max(1.0 - SKIN / max(off, 1e-6), 0.0) * joined);
-    return Look(c, n * max(skin, sheet), inward, thickness, full, here.colour);
+    return Look(c, n * max(skin, sheet), inward, thickness, full, mix(1.0, gaps, joined * (1.0 - sheet) * broad), joined, here.colour);
 }
 
 // Where few are near, those that are farther off count too, the more the fewer are near: a sheet one particle thick
@@ -132,8 +140,43 @@ fn look(x: vec3<f32>, size_m: f32) -> Look {
         mix(near.inward, far.inward, few),
         mix(near.thickness, far.thickness, few),
         mix(near.full, far.full, few),
+        mix(near.loose, far.loose, few),
+        mix(near.joined, far.joined, few),
         mix(near.colour, far.colour, few),
     );
+}
+
+// Of what is seen of a particle, the Gaussian `slot`.
+fn put(g: u32, slot: u32, x: vec3<f32>, opacity: f32, c: mat3x3<f32>, normal: vec3<f32>, gloss: f32, colour: vec3<f32>) {
+    let at = g + slot * params.count;
+    geometry[4u * at] = vec4(x, opacity);
+    geometry[4u * at + 1u] = vec4(c[0].x, c[0].y, c[0].z, c[1].y);
+    geometry[4u * at + 2u] = vec4(c[1].z, c[2].z, 1.0, 1.0 + gloss);
+    geometry[4u * at + 3u] = vec4(normal, 0.0);
+    sh[at] = vec4((colour - 0.5) / SH_FIRST, 0.0);
+}
+
+fn hide(g: u32, first: u32, x: vec3<f32>) {
+    for (var slot = first; slot < params.grains; slot++) {
+        geometry[4u * (g + slot * params.count)] = vec4(x, 0.0);
+    }
+}
+
+// Grains stay round and do not mix. Each is a little lighter or darker, larger or smaller than the next, and none lies on a
+// lattice: those of a particle lie around it, as far as its neighbours are, and along a surface.
+fn put_grains(i: u32, own: vec4<f32>, colour: vec3<f32>, seen: Look, radius_m: f32, parted: f32, opacity: f32) {
+    let apart = max(seen.loose, inverseSqrt(seen.thickness));
+    let share = pow(f32(params.grains), -1.0 / 3.0);
+    for (var slot = 0u; slot < params.grains; slot++) {
+        let word = i + slot * params.count;
+        let size = mix(GRAINS_LOW, GRAINS_HIGH, chance(stirred(word + 0x9e3779b9u)));
+        var astray = vec3(chance(stirred(3u * word)), chance(stirred(3u * word + 1u)), chance(stirred(3u * word + 2u))) * 2.0 - 1.0;
+        astray -= seen.normal * dot(seen.normal, astray);
+        let r = GRAIN * share * size * seen.full * radius_m;
+        let c = mat3x3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0) * (r * r);
+        let tone = 1.0 + TONE * (2.0 * chance(stirred(word)) - 1.0);
+        put(params.first + i, slot, own.xyz + astray * (ASTRAY * apart * own.w * parted), opacity, c, seen.normal, 0.0, colour * tone);
+    }
 }
 
 @compute @workgroup_size(GROUP_SIZE)
@@ -144,44 +187,33 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     }
     let g = params.first + order[k];
     if keys[k] > params.mask {
-        geometry[4u * g] = vec4(0.0);
+        hide(g, 0u, vec3(0.0));
         return;
     }
     let own = bitcast<vec4<f32>>(sorted[2u * k]);
     let mine = bitcast<vec3<f32>>(sorted[2u * k + 1u].xyz);
     let state = unpack2x16float(sorted[2u * k + 1u].w);
     if state.x <= 0.0 {
-        geometry[4u * g] = vec4(own.xyz, 0.0);
+        hide(g, 0u, own.xyz);
         return;
     }
-    let kind = u32(state.y + 0.5);
+    let kind = u32(state.y + 0.25);
+    let clear = clamp(2.0 * (state.y - 3.0), 0.0, 1.0);
     let seen = look(own.xyz, own.w);
     let radius_m = RADIUS * own.w * mix(YOUNG, 1.0, state.x);
-    var x = own.xyz + seen.inward;
-    var c = seen.covariance * (radius_m * radius_m);
     // What is wholly seen is wholly mixed.
     let shown = smoothstep(0.0, SEEN, state.x);
-    var colour = mix(mine, seen.colour, shown);
-    var gloss = GLOSS_PASTE;
-    var opacity = OPACITY * shown;
-    if kind == 3u {
-        gloss = GLOSS_LIQUID;
-        opacity *= 1.0 - CLEAR * max(1.0 - seen.thickness, 0.0);
-    }
     if kind == 1u {
-        // Grains stay round and do not mix. Each is a little lighter or darker, larger or smaller than the next, and none lies on a lattice.
-        let i = order[k];
-        let size = mix(GRAINS_LOW, GRAINS_HIGH, chance(stirred(i + 0x9e3779b9u)));
-        let astray = vec3(chance(stirred(3u * i)), chance(stirred(3u * i + 1u)), chance(stirred(3u * i + 2u))) * 2.0 - 1.0;
-        x = own.xyz + astray * (ASTRAY * own.w * state.x);
-        let r = GRAIN * size * seen.full * radius_m;
-        c = mat3x3(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0) * (r * r);
-        colour = mine * (1.0 + TONE * (2.0 * chance(stirred(i)) - 1.0));
-        gloss = 0.0;
+        put_grains(order[k], own, mine, seen, radius_m, state.x, OPACITY * shown);
+        return;
     }
-    geometry[4u * g] = vec4(x, opacity);
-    geometry[4u * g + 1u] = vec4(c[0].x, c[0].y, c[0].z, c[1].y);
-    geometry[4u * g + 2u] = vec4(c[1].z, c[2].z, 1.0, 1.0 + gloss);
-    geometry[4u * g + 3u] = vec4(seen.normal, 0.0);
-    sh[g] = vec4((colour - 0.5) / SH_FIRST, 0.0);
+    // A clear one is wide, so that many lie over each other and none shows; alone it is a small bright drop.
+    let wide = mix(seen.loose, mix(DROP_SIZE, WIDER, seen.joined), clear);
+    let dimmed = 1.0 - exp(-own.w * seen.thickness / FREE_M);
+    let opacity = shown * mix(OPACITY, mix(DROP_OPACITY, dimmed, seen.joined), clear);
+    // What is mirrored adds to what passes, however little of the rest is seen.
+    let gloss = mix(select(GLOSS_LIQUID, GLOSS_PASTE, kind == 2u), GLOSS_CLEAR / (1.0 - exp(-LAYERED * dimmed)), clear);
+    let colour = mix(mix(mine, seen.colour, shown), vec3(1.0), clear * mix(DROP_PALE, PALE, seen.joined));
+    put(g, 0u, own.xyz + seen.inward, opacity, seen.covariance * (radius_m * radius_m * wide * wide), seen.normal, gloss, colour);
+    hide(g, 1u, own.xyz);
 }

@@ -34,7 +34,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
             }
             let root = bitcast<vec3<f32>>(sorted[2u * k + 1u].xyz);
             let near = cubed(1.0 - apart2) * cubed(there.w / params.spacing_m);
-            let w = near * select(1.0, OWN_COLOUR, k == own);
+            // Colours from farther off than shapes: beads would show else.
+            let w = (1.0 - apart2) * cubed(there.w / params.spacing_m) * select(1.0, OWN_COLOUR, k == own);
             light += w * root * root;
             total += w;
             first += near * d;

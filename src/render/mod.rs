@@ -26,7 +26,7 @@ pub use renderer::{GroundLook, RenderOptions, Renderer, prepare};
 pub use view::{View, parse_colour};
 
 /// Raised when the picture of the same Gaussians may change.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// The whole text of every shader that a picture passes through, for cache keys.
 pub fn shader_text() -> String {

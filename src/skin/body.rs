@@ -1,7 +1,8 @@
 //! What is seen of matter that keeps no shape. Once particles part from those that were around them, they are drawn
-//! themselves: a Gaussian each, of the particle's volume, shaped by how its neighbours lie, coloured by the captured
+//! themselves: a Gaussian each (of grains several), of the particle's volume, shaped by how its neighbours lie, coloured by the captured
 //! Gaussians that were nearest to it and, where it flows, by what it is stirred into.
 
+mod clear;
 mod dye;
 #[cfg(test)]
 mod tests;
@@ -13,6 +14,7 @@ use super::neighbours::{Tree, nearest_of_all};
 use super::skinner::{self, AFFINE, ROTATION, groups};
 use crate::gpu::{Access, Constant, Extent, Gpu, GpuError, Kernel, KernelSource, RadixSort, Recording, SortBuffers};
 use crate::scene::Gaussians;
+use crate::solver::Substance;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -44,6 +46,8 @@ pub const ALONE: [f32; 2] = [0.5, 0.9];
 pub const SHEET: f32 = std::f32::consts::FRAC_PI_4 * REACH * REACH;
 /// See [`SHEET`].
 pub const THREAD: f32 = 0.914_285_7 * REACH;
+/// The same of a body: the integral over a ball.
+pub const BALL: f32 = 0.638_291_3 * REACH * REACH * REACH;
 /// Ratio of the two largest spreads up to which it is a thread, and from which it is not.
 pub const BROAD: [f32; 2] = [0.3, 0.7];
 /// A Gaussian becomes at most so many times wider, however its neighbours part.
@@ -67,15 +71,29 @@ pub const THIN: [f32; 2] = [0.08, 0.25];
 /// Grains differ in tone by this share at most.
 pub const TONE: f32 = 0.14;
 /// And in size: the least and the largest over the mean one.
-pub const GRAINS: [f32; 2] = [0.6, 1.25];
+pub const GRAINS: [f32; 2] = [0.55, 1.3];
 /// A grain lies so far at most from its particle along each axis, in sizes: particles begin on a lattice, grains do not.
-pub const ASTRAY: f32 = 0.35;
+pub const ASTRAY: f32 = 0.75;
 /// Weight of its own colour among those of its neighbours that a particle is stirred into, by its volume 1.
 pub const OWN_COLOUR: f32 = 0.3;
-/// How much clearer a liquid is where it is thin: share of its opacity that it would lose where it is no more.
-pub const CLEAR: f32 = 0.6;
-/// How much a surface shines, over a mirror's share.
-pub const GLOSS: [f32; 2] = [0.35, 1.0];
+/// How much a surface of a paste, a thick and a clear liquid shines, over a mirror's share.
+pub const GLOSS: [f32; 3] = [0.5, 2.0, 1.5];
+/// Of what lies loosely a Gaussian becomes at most so many times larger.
+pub const LOOSEST: f32 = 1.8;
+/// How much wider a clear liquid's are.
+pub const WIDER: f32 = 1.3;
+/// Gaussians of a clear liquid's layer that lie over each other: 2 pi times their variance over a spacing's square.
+pub const LAYERED: f32 = std::f32::consts::TAU * (RADIUS * FLAT * WIDER) * (RADIUS * FLAT * WIDER);
+/// Length over which one of a clear liquid dims what is behind it by a factor of e, metres.
+pub const FREE_M: f32 = 0.04;
+/// How far a clear liquid's colour goes towards white, in a body and as a drop.
+pub const PALE: [f32; 2] = [0.35, 0.8];
+/// Opacity of a clear drop, and its size over that of its volume.
+pub const DROP: [f32; 2] = [0.35, 0.75];
+/// At most so many Gaussians are drawn of a particle of grains.
+pub const GRAINS_EACH: u32 = 3;
+/// And of all of them, unless there are more particles.
+pub const GRAINS_MOST: usize = 600_000;
 /// Of one key no more particles are looked at.
 const CROWD: u32 = 512;
 /// Captured Gaussians that a particle has its colour from.
@@ -93,6 +111,8 @@ struct Immediates {
     spacing_m: f32,
     first: u32,
     mask: u32,
+    grains: u32,
+    padding: [u32; 3],
 }
 
 /// The particles of a scene as they are drawn.
@@ -102,20 +122,28 @@ pub struct Filling {
     pub rest_m: Vec<Vec3>,
     /// Colour of each, display-referred, from all sides alike, and its size in metres.
     pub tint: Vec<[f32; 4]>,
-    /// What each adds to the colour of what it flows with: that of its surroundings.
+    /// What each adds to the colour of what it flows with: that of its surroundings. And how clear it is as a liquid, 0 to 1.
     pub dye: Vec<[f32; 4]>,
     /// [`BESIDE`] nearest particles of each of the same object; itself where there are fewer.
     pub beside: Vec<u32>,
     /// Distance between particles where they fill the room, metres.
     pub spacing_m: f32,
+    /// Gaussians of each: the last so many times the particles of those that are drawn.
+    pub grains: u32,
 }
 
 impl Filling {
     /// Of particles in the captured pose, with their volumes and the objects they belong to.
     pub fn new(gaussians: &Gaussians, object_of: &[u32], rest_m: &[Vec3], volume_m3: &[f32], object: &[u32]) -> Filling {
         let spacing_m = spacing_m(volume_m3);
-        let mut filling =
-            Filling { rest_m: rest_m.to_vec(), tint: vec![[0.0; 4]; rest_m.len()], dye: vec![[0.0; 4]; rest_m.len()], beside: Vec::new(), spacing_m };
+        let mut filling = Filling {
+            rest_m: rest_m.to_vec(),
+            tint: vec![[0.0; 4]; rest_m.len()],
+            dye: vec![[0.0; 4]; rest_m.len()],
+            beside: Vec::new(),
+            spacing_m,
+            grains: 1,
+        };
         filling.beside = (0..rest_m.len() as u32).flat_map(|i| std::iter::repeat_n(i, BESIDE as usize)).collect();
         let mut own: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         (0..rest_m.len()).for_each(|i| own.entry(object[i]).or_default().push(i));
@@ -130,6 +158,20 @@ impl Filling {
             tint[3] = volume.max(0.0).cbrt().clamp(0.4 * spacing_m, 1.5 * spacing_m);
         }
         filling
+    }
+
+    /// Of what the particles are made of, and what they may become: how clear that is, and whether it is grains.
+    pub fn made_of(mut self, substances: impl Iterator<Item = Substance>, later: &[Substance]) -> Filling {
+        let later_clear = later.iter().find_map(clear::clearness);
+        let mut grains = later.iter().any(clear::is_grains);
+        for (dye, substance) in self.dye.iter_mut().zip(substances) {
+            dye[3] = clear::clearness(&substance).or(later_clear).unwrap_or(0.0);
+            grains |= clear::is_grains(&substance);
+        }
+        if grains {
+            self.grains = ((GRAINS_MOST / self.rest_m.len().max(1)) as u32).clamp(1, GRAINS_EACH);
+        }
+        self
     }
 
     /// Finds the particles that are next to each of an object's.
@@ -228,8 +270,10 @@ impl Body {
                 count,
                 reach_m: REACH * filling.spacing_m,
                 spacing_m: filling.spacing_m,
-                first: splats.count - count,
+                first: splats.count - count * filling.grains.max(1),
                 mask: places - 1,
+                grains: filling.grains.max(1),
+                padding: [0; 3],
             },
         })
     }
@@ -308,7 +352,16 @@ fn constants() -> Vec<(&'static str, Constant)> {
         ("THIN_LOW", THIN[0]),
         ("THIN_HIGH", THIN[1]),
         ("OWN_COLOUR", OWN_COLOUR),
-        ("CLEAR", CLEAR),
+        ("BALL", BALL),
+        ("LOOSEST", LOOSEST),
+        ("WIDER", WIDER),
+        ("LAYERED", LAYERED),
+        ("FREE_M", FREE_M),
+        ("PALE", PALE[0]),
+        ("DROP_PALE", PALE[1]),
+        ("DROP_OPACITY", DROP[0]),
+        ("DROP_SIZE", DROP[1]),
+        ("GLOSS_CLEAR", GLOSS[2]),
         ("SH_FIRST", SH_FIRST),
         ("TONE", TONE),
         ("GRAINS_LOW", GRAINS[0]),

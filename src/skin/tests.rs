@@ -68,7 +68,7 @@ impl Body {
 
     /// The same, ready for what keeps no shape: captured Gaussians, then those of the particles, and their colours.
     fn filled_on_device(&self, bound: &Bound, filling: &Filling, motion: &[[u32; 8]]) -> (Vec<[f32; 16]>, Vec<[f32; 4]>) {
-        let object = [self.object.as_slice(), &vec![0; self.particles.len()]].concat();
+        let object = [self.object.as_slice(), &vec![0; self.particles.len() * filling.grains as usize]].concat();
         let splats = Splats::new(&self.gpu, &self.scene, Quat::IDENTITY, &object).unwrap();
         let mut skinner = Skinner::new(&self.gpu, &splats, bound, &self.particles, Weights::Exact).unwrap();
         skinner.fill(&splats, filling).unwrap();
@@ -347,7 +347,10 @@ fn the_benchmark_measures_something() {
 #[test]
 fn what_keeps_no_shape_follows_the_twin() {
     let body = body();
-    let (bound, filling) = (body.bound(8, Weights::Exact), body.filling());
+    let (bound, mut filling) = (body.bound(8, Weights::Exact), body.filling());
+    filling.grains = 2;
+    // Liquids of all kinds, from clear to thick.
+    filling.dye.iter_mut().enumerate().for_each(|(i, dye)| dye[3] = [0.0, 0.5, 1.0][i % 3]);
     let poured = |i: usize, p: Vec3| {
         if p.z < PLACE.z + 0.12 { p } else { PLACE + Vec3::new(noise(i, 31) * 0.8, noise(i, 32) * 0.8, -0.02 + 0.01 * noise(i, 33)) }
     };
@@ -375,15 +378,18 @@ fn what_keeps_no_shape_follows_the_twin() {
     }
     let (mut seen, mut astray) = (0, 0);
     for i in 0..places.len() {
-        let got = drawn[captured + i];
-        let Some((want, tint)) = body_twin::drawn(&filling, &places, &flow, i) else {
+        let all = body_twin::all_drawn(&filling, &places, &flow, i);
+        let slot = i % 2;
+        let at = captured + slot * places.len() + i;
+        let got = drawn[at];
+        let Some(&(want, tint)) = all.get(slot) else {
             assert_eq!(got[3], 0.0);
             continue;
         };
         seen += 1;
         let size = want[4] + want[7] + want[9];
         assert!((0..4).all(|k| (got[k] - want[k]).abs() < [1e-5, 1e-3][k / 3]), "{i}: {got:?} instead of {want:?}");
-        assert!(got[10..12] == want[10..12] && Vec3::from_slice(&colour[captured + i]).abs_diff_eq(tint, 1e-3), "{i}");
+        assert!(got[10] == want[10] && (got[11] / want[11] - 1.0).abs() < 1e-3 && Vec3::from_slice(&colour[at]).abs_diff_eq(tint, 1e-3), "{i}");
         // A sheet has two sides, neither of which is the front; where the way out lies in it, a hair decides which.
         let (way, wanted) = (Vec3::from_slice(&got[12..]), Vec3::from_slice(&want[12..]));
         let turned = (way - wanted).length().min((way + wanted).length()) > 5e-3;

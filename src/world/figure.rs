@@ -39,9 +39,13 @@ impl Figure {
     pub fn new(gpu: &Gpu, prepared: &Prepared, bound: &Bound, matter: &Matter, weights: Weights) -> Result<Figure, GpuError> {
         let particles = &matter.particles;
         let rest_m = &particles.position_m;
-        let filling = is_filled(matter, weights)
-            .then(|| Filling::new(&prepared.gaussians, &prepared.object_of, rest_m, &particles.volume_m3, &particles.object));
-        let mut figure = Figure::with_room(gpu, prepared, filling.as_ref().map_or(&[], |_| &particles.object))?;
+        let filling = is_filled(matter, weights).then(|| {
+            let later: Vec<_> = matter.changes.iter().flatten().map(|stuff| stuff.substance.clone()).collect();
+            let made_of = particles.substance.iter().map(|&row| particles.substances[usize::from(row)].clone());
+            Filling::new(&prepared.gaussians, &prepared.object_of, rest_m, &particles.volume_m3, &particles.object).made_of(made_of, &later)
+        });
+        let more = filling.as_ref().map_or(Vec::new(), |filling| particles.object.repeat(filling.grains as usize));
+        let mut figure = Figure::with_room(gpu, prepared, &more)?;
         let mut skinner = Skinner::new(gpu, &figure.splats, bound, rest_m, weights)?;
         if let Some(filling) = &filling {
             skinner.fill(&figure.splats, filling)?;

@@ -1,13 +1,15 @@
 //! The colours that flow: of each place of a thing the colour that it has from afar, so that what is poured runs in streaks of the
 //! thing's own hues, not in the specks of its petals, shadows and highlights.
 
-use super::{BESIDE, Filling};
+use super::Filling;
 use glam::Vec3;
+use std::collections::BTreeMap;
 
 /// How far colours are taken together, as a standard deviation along an axis over the extent of the thing.
-const SPREAD: f32 = 0.03;
-/// Rounds of that at most, where particles are tiny.
-const ROUNDS_MOST: u32 = 100;
+const SPREAD: f32 = 0.06;
+/// How far a cell's colour spreads, as a standard deviation in cells: the square root of 1/12 of the cell, 1/2 of the blur and 1/6 of
+/// what is taken between cells.
+const BLUR: f32 = 0.866;
 /// Weight of what has no colour, a shadow or a white, beside what is vivid: 1 over its chroma.
 const PALE: f32 = 0.15;
 /// Chroma that hues which cancel out lose is given back, up to so many times what is left.
@@ -46,21 +48,45 @@ fn chroma(colour: Vec3) -> f32 {
     colour.max_element() - colour.min_element()
 }
 
-/// The colour of the surroundings of an object's particles in the captured pose: it spreads from each to those beside it.
-pub(super) fn mix(filling: &Filling, own: &[usize]) -> Vec<Vec3> {
-    let (low, high) = own.iter().map(|&i| filling.rest_m[i]).fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
-    // Of a round half stays and half comes from a spacing away: a sixth of a spacing squared along each axis.
-    let spacings = SPREAD * (high - low).max_element() / filling.spacing_m;
-    let rounds = ((6.0 * spacings * spacings).ceil() as u32).min(ROUNDS_MOST);
-    let mut slot = vec![0usize; filling.rest_m.len()];
-    own.iter().enumerate().for_each(|(k, &i)| slot[i] = k);
-    let beside = |i: usize| filling.beside[i * BESIDE as usize..(i + 1) * BESIDE as usize].iter().map(|&j| slot[j as usize]);
-    let mut pots: Vec<Pot> = own.iter().map(|&i| Pot::of(Vec3::from_slice(&filling.tint[i]))).collect();
-    for _ in 0..rounds {
-        let shared = |(k, &i): (usize, &usize)| beside(i).fold(Pot::default().plus(pots[k], 0.5), |pot, j| pot.plus(pots[j], 0.5 / BESIDE as f32));
-        pots = own.iter().enumerate().map(shared).collect();
+type Pots = BTreeMap<[i32; 3], Pot>;
+
+/// Half of each stays, a quarter goes to the cell on either side.
+fn blurred(pots: &Pots, axis: usize) -> Pots {
+    let mut all = Pots::new();
+    for (&cell, &pot) in pots {
+        for (step, share) in [(-1, 0.25), (0, 0.5), (1, 0.25)] {
+            let mut to = cell;
+            to[axis] += step;
+            let there = all.entry(to).or_default();
+            *there = there.plus(pot, share);
+        }
     }
-    pots.into_iter().map(Pot::colour).collect()
+    all
+}
+
+/// What lies around a place, in cells, by the eight cells whose middles are nearest.
+fn between(pots: &Pots, place: Vec3) -> Pot {
+    let corner = (place - 0.5).floor();
+    let f = place - 0.5 - corner;
+    (0..8).fold(Pot::default(), |sum, k| {
+        let step = Vec3::new((k % 2) as f32, (k / 2 % 2) as f32, (k / 4) as f32);
+        let share = (Vec3::ONE - (f - step).abs()).element_product();
+        pots.get(&(corner + step).as_ivec3().to_array()).map_or(sum, |&pot| sum.plus(pot, share))
+    })
+}
+
+/// The colour of the surroundings of an object's particles in the captured pose.
+pub(super) fn mix(filling: &Filling, own: &[usize]) -> Vec<Vec3> {
+    let places = || own.iter().map(|&i| filling.rest_m[i]);
+    let (low, high) = places().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
+    let cell_m = (SPREAD / BLUR * (high - low).max_element()).max(filling.spacing_m);
+    let mut pots = Pots::new();
+    for (&i, place) in own.iter().zip(places()) {
+        let there = pots.entry(((place - low) / cell_m).floor().as_ivec3().to_array()).or_default();
+        *there = there.plus(Pot::of(Vec3::from_slice(&filling.tint[i])), 1.0);
+    }
+    let pots = (0..3).fold(pots, |pots, axis| blurred(&pots, axis));
+    places().map(|place| between(&pots, (place - low) / cell_m).colour()).collect()
 }
 
 #[cfg(test)]
@@ -78,9 +104,8 @@ mod tests {
             (_, false) => Vec3::new(0.1, 0.1, 0.8),
         };
         let tint = (0..rest_m.len()).map(|i| of(i).extend(0.01).to_array()).collect();
-        let mut filling = Filling { tint, spacing_m: 0.01, beside: vec![0; BESIDE as usize * rest_m.len()], rest_m, ..Filling::default() };
+        let filling = Filling { tint, spacing_m: 0.01, rest_m, ..Filling::default() };
         let own: Vec<usize> = (0..filling.rest_m.len()).collect();
-        filling.watch(&own);
         for (i, dye) in mix(&filling, &own).into_iter().enumerate() {
             let hue = if i % 40 < 20 { dye.x - dye.z } else { dye.z - dye.x };
             let middle = (i % 40).abs_diff(20) < 5;

@@ -30,6 +30,11 @@ fn weight(from: Vec3, size_m: f32, reach_m: f32) -> f32 {
     (1.0 - (from / reach_m).length_squared()).max(0.0).powi(3) * (size_m / reach_m).powi(3)
 }
 
+/// The same of its colour.
+fn share(from: Vec3, size_m: f32, reach_m: f32) -> f32 {
+    (1.0 - (from / reach_m).length_squared()).max(0.0) * (size_m / reach_m).powi(3)
+}
+
 /// The colour that a particle brings along.
 fn brought(filling: &Filling, flow: u32, i: usize) -> Vec3 {
     Vec3::from_slice(if flow > 1 { &filling.dye[i] } else { &filling.tint[i] })
@@ -40,7 +45,7 @@ pub fn stirred_light(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize)
     let reach_m = REACH * filling.spacing_m;
     let (mut light, mut total) = (Vec3::ZERO, 0.0);
     for (j, &x) in places.iter().enumerate().filter(|(j, _)| flow[*j] > 0) {
-        let w = weight(x - places[i], filling.tint[j][3], reach_m) * if j == i { OWN_COLOUR } else { 1.0 };
+        let w = share(x - places[i], filling.tint[j][3], reach_m) * if j == i { OWN_COLOUR } else { 1.0 };
         light += brought(filling, flow[j], j).powf(2.0) * w;
         total += w;
     }
@@ -61,7 +66,8 @@ fn middle(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Vec3 {
 
 fn around(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize, cells: f32) -> Around {
     let reach_m = cells * REACH * filling.spacing_m;
-    let (mut volume, mut first, mut second, mut light, mut lean) = (0.0, Vec3::ZERO, Mat3::ZERO, Vec3::ZERO, Vec3::ZERO);
+    let (mut volume, mut first, mut second, mut lean) = (0.0, Vec3::ZERO, Mat3::ZERO, Vec3::ZERO);
+    let (mut light, mut lit) = (Vec3::ZERO, 0.0);
     for (j, &x) in places.iter().enumerate().filter(|(j, _)| flow[*j] > 0) {
         let w = weight(x - places[i], filling.tint[j][3], reach_m);
         if w > 0.0 {
@@ -69,13 +75,15 @@ fn around(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize, cells: f32
             volume += w;
             first += d * w;
             second += outer(d, d) * w;
-            light += stirred_light(filling, places, flow, j) * w;
+            let shines = share(x - places[i], filling.tint[j][3], reach_m);
+            light += stirred_light(filling, places, flow, j) * shines;
+            lit += shines;
             lean += middle(filling, places, flow, j) * w;
         }
     }
     let mean = first / volume;
     let spread = second * (1.0 / volume) - outer(mean, mean);
-    Around { volume, middle: mean, spread, colour: (light / volume).powf(0.5), lean: lean / volume }
+    Around { volume, middle: mean, spread, colour: (light / lit).powf(0.5), lean: lean / volume }
 }
 
 /// What a particle looks like; see `struct Look`.
@@ -85,6 +93,8 @@ struct Look {
     inward: Vec3,
     thickness: f32,
     full: f32,
+    loose: f32,
+    joined: f32,
     colour: Vec3,
 }
 
@@ -111,6 +121,7 @@ fn looked(size_m: f32, here: &Around, cells: f32, filling: &Filling) -> Look {
     let apart = mix(THREAD * cells * own, cells * (SHEET * own).sqrt(), broad);
     let held = mix(1.0, apart.max(1.0) * spare, mix(joined, sheet, broad)).min(WIDEST);
     let full = mix(1.0, spare, joined * (1.0 - sheet) * broad);
+    let gaps = (cells * (BALL * own * (1.0 - 0.5 * skin)).cbrt()).clamp(1.0, LOOSEST);
     let flat = 1.0 + (FLAT - 1.0) * skin.max(sheet);
     let across_r = mix(held.powf(-0.5), held, broad) * flat * full;
     let thickness = mix(held.powf(-0.5), held.powi(-2), broad).max(THINNEST);
@@ -122,6 +133,8 @@ fn looked(size_m: f32, here: &Around, cells: f32, filling: &Filling) -> Look {
         inward: here.middle * (reach_m * EVEN * (1.0 - SKIN / off.max(1e-6)).max(0.0) * joined),
         thickness,
         full,
+        loose: mix(1.0, gaps, joined * (1.0 - sheet) * broad),
+        joined,
         colour: here.colour,
     }
 }
@@ -138,41 +151,61 @@ fn look(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Look {
         inward: near.inward.lerp(far.inward, few),
         thickness: mix(near.thickness, far.thickness, few),
         full: mix(near.full, far.full, few),
+        loose: mix(near.loose, far.loose, few),
+        joined: mix(near.joined, far.joined, few),
         colour: near.colour.lerp(far.colour, few),
     }
 }
 
 /// Passes `skin.body_order` and `skin.body_shape`: one particle, none where it is not seen. `flow` is 0 for what keeps its shape.
 pub fn drawn(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Option<Drawn> {
-    if flow[i] == 0 {
-        return None;
-    }
-    let parted = parted(filling, places, flow[i], i);
+    all_drawn(filling, places, flow, i).into_iter().next()
+}
+
+/// All that is drawn of it.
+pub fn all_drawn(filling: &Filling, places: &[Vec3], flow: &[u32], i: usize) -> Vec<Drawn> {
+    let parted = if flow[i] == 0 { 0.0 } else { parted(filling, places, flow[i], i) };
     if parted <= 0.0 {
-        return None;
+        return Vec::new();
     }
     let look = look(filling, places, flow, i);
-    let radius_m = RADIUS * filling.tint[i][3] * mix(YOUNG, 1.0, parted);
-    let mine = brought(filling, flow[i], i);
+    match flow[i] {
+        1 => (0..filling.grains as usize).map(|slot| grain(filling, places, &look, parted, i, slot)).collect(),
+        flow => vec![poured(filling, places, &look, parted, flow, i)],
+    }
+}
+
+fn grain(filling: &Filling, places: &[Vec3], look: &Look, parted: f32, i: usize, slot: usize) -> Drawn {
+    let size_m = filling.tint[i][3];
+    let word = (i + slot * places.len()) as u32;
+    let apart = look.loose.max(look.thickness.powf(-0.5));
+    let share = (filling.grains as f32).powf(-1.0 / 3.0);
+    let size = mix(GRAINS[0], GRAINS[1], chance(word.wrapping_add(0x9e37_79b9)));
+    let mut astray = Vec3::new(chance(3 * word), chance(3 * word + 1), chance(3 * word + 2)) * 2.0 - 1.0;
+    astray -= look.normal * look.normal.dot(astray);
+    let x = places[i] + astray * (ASTRAY * apart * size_m * parted);
+    let radius_m = GRAIN * share * size * look.full * RADIUS * size_m * mix(YOUNG, 1.0, parted);
+    let tone = 1.0 + TONE * (2.0 * chance(word) - 1.0);
+    let opacity = OPACITY * smoothstep([0.0, SEEN], parted);
+    record(x, opacity, Mat3::IDENTITY * (radius_m * radius_m), look.normal, 0.0, brought(filling, 1, i) * tone)
+}
+
+fn poured(filling: &Filling, places: &[Vec3], look: &Look, parted: f32, flow: u32, i: usize) -> Drawn {
+    let size_m = filling.tint[i][3];
+    let clear = if flow == 3 { filling.dye[i][3] } else { 0.0 };
     let shown = smoothstep([0.0, SEEN], parted);
-    let mut opacity = OPACITY * shown;
-    let (x, c, colour, gloss) = match flow[i] {
-        1 => {
-            let word = i as u32;
-            let tone = 1.0 + TONE * (2.0 * chance(word) - 1.0);
-            let size = mix(GRAINS[0], GRAINS[1], chance(word.wrapping_add(0x9e37_79b9)));
-            let astray = Vec3::new(chance(3 * word), chance(3 * word + 1), chance(3 * word + 2)) * 2.0 - 1.0;
-            let x = places[i] + astray * (ASTRAY * filling.tint[i][3] * parted);
-            (x, Mat3::IDENTITY * (GRAIN * size * look.full * radius_m).powi(2), mine * tone, 0.0)
-        }
-        flow => {
-            opacity *= if flow == 3 { 1.0 - CLEAR * (1.0 - look.thickness).max(0.0) } else { 1.0 };
-            (places[i] + look.inward, look.covariance * (radius_m * radius_m), mine.lerp(look.colour, shown), GLOSS[flow as usize - 2])
-        }
-    };
-    let (a, b, d, n) = (c.x_axis, c.y_axis, c.z_axis, look.normal);
-    let record = [x.x, x.y, x.z, opacity, a.x, a.y, a.z, b.y, b.z, d.z, 1.0, 1.0 + gloss, n.x, n.y, n.z, 0.0];
-    Some((record, (colour - 0.5) / SH_FIRST))
+    let wide = mix(look.loose, mix(DROP[1], WIDER, look.joined), clear);
+    let radius_m = wide * RADIUS * size_m * mix(YOUNG, 1.0, parted);
+    let dimmed = 1.0 - (-size_m * look.thickness / FREE_M).exp();
+    let opacity = shown * mix(OPACITY, mix(DROP[0], dimmed, look.joined), clear);
+    let gloss = mix(GLOSS[flow as usize - 2], GLOSS[2] / (1.0 - (-LAYERED * dimmed).exp()), clear);
+    let colour = brought(filling, flow, i).lerp(look.colour, shown).lerp(Vec3::ONE, clear * mix(PALE[1], PALE[0], look.joined));
+    record(places[i] + look.inward, opacity, look.covariance * (radius_m * radius_m), look.normal, gloss, colour)
+}
+
+fn record(x: Vec3, opacity: f32, c: Mat3, n: Vec3, gloss: f32, colour: Vec3) -> Drawn {
+    let (a, b, d) = (c.x_axis, c.y_axis, c.z_axis);
+    ([x.x, x.y, x.z, opacity, a.x, a.y, a.z, b.y, b.z, d.z, 1.0, 1.0 + gloss, n.x, n.y, n.z, 0.0], (colour - 0.5) / SH_FIRST)
 }
 
 /// 0 to 1, of a particle.
