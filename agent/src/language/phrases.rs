@@ -163,11 +163,15 @@ fn landing(tokens: &[Token], at: usize, names: &Names) -> Option<(Sense, usize)>
         let moment = if times == 1.0 { Moment::Landing } else { Moment::LaterLanding };
         return Some((Sense::Moment(moment), verb + 1 - at));
     }
-    let named = |i: usize| names.read(tokens, i).map_or(1, |(_, length)| length);
+    // Whom nobody knows is left to be reported.
+    let named = |i: usize| match names.read(tokens, i) {
+        Some((_, length)) => Some(length),
+        None => matches!(word(i), "this" | "that" | "thing" | "object" | "everything" | "one").then_some(1),
+    };
     let verb = match word(who) {
         "it" | "they" if matches!(word(who + 1), "has" | "have" | "first") => who + 2,
         "it" | "they" => who + 1,
-        _ => who + article(who) + named(who + article(who)),
+        _ => who + article(who) + named(who + article(who))?,
     };
     if !matches!(
         word(verb),

@@ -41,7 +41,9 @@ pub fn understand(field: Field, clause: &mut Clause, draft: &mut Draft) -> Resul
     // "swing it to and fro" says it twice.
     while clause.take_verb(|v| v == Verb::Field(field)).is_some() {}
     let objects = draft.subjects(clause)?;
-    let at_s = clause.take_at();
+    // "It explodes into sand at 0.5 s": the time was that of the sand too.
+    let said = clause.phrases().iter().find_map(|p| if let Sense::At(time) = p.sense { Some(time) } else { None });
+    let at_s = clause.take_at().or(said.filter(|_| field == Field::Explode));
     // A blast is over at once: "for 2 s" is how long the run lasts.
     let span = if field == Field::Explode { (at_s.unwrap_or(0.0), Until::End) } else { lasts(clause, at_s)? };
     let aimed = matches!(field, Field::Swirl | Field::Motor | Field::Sway | Field::Shake);

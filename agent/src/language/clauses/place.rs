@@ -5,6 +5,7 @@ use super::super::draft::{Draft, Refusal, rotate_deg, rotation};
 use super::super::numbers::Dimension;
 use super::super::say;
 use super::super::sense::{Direction, Pose, Preposition, Property, Sense, Verb, View};
+use super::stuff;
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -133,6 +134,9 @@ pub fn shift(clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
 /// "turn it by 90 degrees", "tilt it 20 degrees to the left".
 pub fn turn(verb: Verb, clause: &mut Clause, draft: &mut Draft) -> Result<(), Refusal> {
     let objects = draft.subjects(clause)?;
+    if verb == Verb::Turn {
+        stuff::refuse_unknown(clause, draft)?;
+    }
     if clause.take_at().is_some() {
         return Err("a turn is where it starts; \"spin it\" turns it over time".to_owned());
     }

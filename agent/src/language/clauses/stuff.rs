@@ -3,8 +3,9 @@
 
 use super::super::clause::{Clause, Scale};
 use super::super::draft::{Draft, Refusal};
+use super::super::phrases::Phrase;
 use super::super::say;
-use super::super::sense::{Preposition, Property, Sense};
+use super::super::sense::{Field, Preposition, Property, Sense, Verb};
 use super::adjust::{comparative, is_light};
 use super::parts::{self, Owner};
 use super::when::{self, When};
@@ -27,8 +28,14 @@ pub fn stiffness(scale: Scale, clause: &mut Clause, draft: &mut Draft) -> Result
         let young = young_mut(draft, &owner)?;
         // What holds itself goes on doing so.
         *young = if let Young::AtLeast(_) = young { Young::AtLeast(after) } else { Young::Value(after) };
+        let bears = matches!(young, Young::AtLeast(_)) && after < before;
         let words = comparative(owner.said, scale, "stiffer", "softer");
-        draft.gloss.push(format!("{words}: Young's modulus {}{note} to {}", say::pressure(before), say::pressure(after)));
+        let obeyed = if bears {
+            format!("; what its weight made firmer stays so, \"stiffness {}\" is obeyed and sags", say::pressure(after))
+        } else {
+            String::new()
+        };
+        draft.gloss.push(format!("{words}: Young's modulus {}{note} to {}{obeyed}", say::pressure(before), say::pressure(after)));
     }
     Ok(())
 }
@@ -115,9 +122,28 @@ pub fn set_poisson(clause: &mut Clause, draft: &mut Draft, poisson: f64) -> Resu
     Ok(())
 }
 
-/// Whether the clause has a motion whose time is said: "push the jelly vase at 1 s".
+/// Whether the clause has a motion whose time is said: "push the jelly vase at 1 s". What explodes into something is that
+/// from then on.
 fn moves(clause: &Clause) -> bool {
-    clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(verb) if !is_light(verb, clause)))
+    let into = clause.phrases().iter().any(|p| p.sense == Sense::Preposition(Preposition::Into));
+    let light = |verb| is_light(verb, clause) || (into && verb == Verb::Field(Field::Explode));
+    clause.phrases().iter().any(|p| matches!(p.sense, Sense::Verb(verb) if !light(verb)))
+}
+
+/// Refuses "turn it into jello": what it is to be is no material that is known.
+pub fn refuse_unknown(clause: &Clause, draft: &Draft) -> Result<(), Refusal> {
+    let phrases = clause.phrases();
+    let into = |p: &Phrase| matches!(p.sense, Sense::Preposition(Preposition::Into | Preposition::To));
+    let Some(at) = phrases.iter().position(into) else { return Ok(()) };
+    match phrases[at + 1..].iter().find(|p| p.sense != Sense::Article) {
+        Some(phrase) if phrase.sense == Sense::Unknown => {
+            let words = draft.words(phrase.span.clone());
+            let known: Vec<&str> = presets::MATERIALS.iter().map(|preset| preset.name).collect();
+            let meant = phystalk::spec::nearest(&words, known.iter().copied()).map(|near| format!(" (did you mean {near}?)")).unwrap_or_default();
+            Err(format!("{words} is no material here{meant}; there are {}", known.join(", ")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What a clause says that something is made of.
