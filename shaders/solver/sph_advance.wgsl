@@ -40,16 +40,18 @@ fn braked(x: vec3<f32>, v: vec3<f32>, full: f32) -> vec3<f32> {
 }
 
 // Moves what got behind a surface on its way back onto it, behind the ground last; it keeps no inward velocity. What was there
-// before comes out little by little.
+// before comes out as slowly as what is too dense thins out: neighbours feel how fast it comes, for they keep the density.
 fn kept_out(from_x: vec3<f32>, x: vec3<f32>, v: vec3<f32>, rest_m: f32) -> array<vec3<f32>, 2> {
     var outside = x;
     var u = v;
+    let eased_share = min(substep.dt_s * sqrt(EASE_OUT_M_S2 * params.per_m), 1.0);
     for (var k = params.collider_count; k > 0u; k--) {
         let c = k - 1u;
         let t = touch(colliders[c], outside);
         if (t.distance_m < rest_m) {
             let normal = surface_normal(colliders[c], t.face, outside);
-            outside += normal * min(rest_m - t.distance_m, max(dot(from_x - outside, normal), 0.0) + params.push_m);
+            let depth_m = rest_m - t.distance_m;
+            outside += normal * min(depth_m, max(dot(from_x - outside, normal), 0.0) + eased_share * depth_m);
             u -= normal * min(dot(u, normal), 0.0);
         }
     }

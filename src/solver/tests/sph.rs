@@ -11,9 +11,9 @@ use crate::solver::obstacles;
 use crate::solver::state::ParticleState;
 use crate::solver::twin::{self, Surroundings};
 use crate::solver::validate::{block, joined};
-use crate::solver::{Collider, Moduli, Particles, Plane, Settings, Substance};
+use crate::solver::{Collider, Moduli, Particles, Placement, Plane, Settings, Substance};
 use crate::spec::{BoxShape, ColliderShape, ElasticModel, PlaneShape};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Quat, Vec3};
 
 const D_M: f32 = 0.025;
 const CELL_M: f32 = 2.0 * D_M;
@@ -265,7 +265,7 @@ fn one_substep_pass_by_pass() {
             let behind = f64::from(s.rest_m.min(0.0) - touch.distance_m);
             if behind > 0.0 {
                 let normal = c.normal(touch.face, x.as_vec3()).as_dvec3();
-                x += normal * behind.min((me.x - x).dot(normal).max(0.0) + f64::from(around.params.push_m));
+                x += normal * behind.min((me.x - x).dot(normal).max(0.0) + twin::sph::out_of_walls(cell, dt) * behind);
                 v -= normal * v.dot(normal).min(0.0);
             }
         }
@@ -316,6 +316,27 @@ fn what_is_too_dense_from_the_start_is_not_thrown_apart() {
                 assert!(stirred < 0.05, "{stirred} m/s after {time_s} s, squeezed to {squeezed}");
             }
         }
+    }
+}
+
+#[test]
+fn what_starts_inside_a_wall_comes_out_without_throwing_the_rest_apart() {
+    let particles = liquid(Vec3::ZERO, Vec3::splat(0.2), 1e-3, 0.0);
+    let colliders = vec![wall(Vec3::ZERO, Vec3::X)];
+    for step_s in [1e-4, 1e-3] {
+        let mut solver = solver(Settings { gravity_m_s2: Vec3::ZERO, colliders: colliders.clone(), ..Settings::new(CELL_M) }, &particles);
+        // Two layers are behind it.
+        let (offset_m, still) = (Vec3::new(-0.04, 0.0, 0.0), Vec3::ZERO);
+        let placement = Placement { rotation: Quat::IDENTITY, centre_m: Vec3::ZERO, offset_m, velocity_m_s: still, spin_rad_s: still };
+        solver.place(0, &placement).expect("a placement");
+        for k in 1..=10 {
+            solver.advance(step_s * f64::from(k), &Stop::default()).expect("an advance");
+            let stirred = stirred_m_s(&solver.states().expect("states"), still);
+            assert!(stirred < 0.2, "{stirred} m/s after {k} substeps of {step_s} s");
+        }
+        solver.advance(0.5, &Stop::default()).expect("an advance");
+        let deepest = solver.states().expect("states").iter().map(|s| s.position_m.x).fold(0.0, f32::min);
+        assert!(deepest > -0.002, "still {deepest} m inside");
     }
 }
 

@@ -237,6 +237,11 @@ pub fn eased(much: f64, rate: f64, cell: f64, dt_s: f64) -> [f64; 2] {
     [(much + dt_s * next).max(0.0), next]
 }
 
+/// Share of its depth by which a surface lets out in a substep what stands inside it.
+pub fn out_of_walls(cell: f64, dt_s: f64) -> f64 {
+    (dt_s * (f64::from(EASE_OUT_M_S2) / cell).sqrt()).min(1.0)
+}
+
 /// How far a particle belongs to the surface.
 fn on_surface(p: &Particle) -> f64 {
     let share = ((p.inward - f64::from(SURFACE_FROM)) / f64::from(SURFACE_TO - SURFACE_FROM)).clamp(0.0, 1.0);
