@@ -32,6 +32,7 @@ mod retry;
 mod rigid;
 mod sph;
 mod state;
+mod stored;
 mod substance;
 mod support;
 mod transfer;
