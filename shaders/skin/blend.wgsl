@@ -33,6 +33,11 @@ fn sheds(i: u32) -> bool {
     return unpack2x16float(delta[i].b.w).y > 0.5;
 }
 
+/// Whether it flew out of what is followed.
+fn has_left(i: u32) -> bool {
+    return unpack2x16float(delta[i].b.w).y < -0.5;
+}
+
 fn added(sum: Delta, d: Delta, w: f32) -> Delta {
     return Delta(sum.x + w * d.x, sum.y + w * d.y, sum.z + w * d.z);
 }
@@ -139,6 +144,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     var seen = 1.0;
     if !PAPER && sheds(particle[slot * VECTORS].x) {
         seen -= smoothstep(FADES_LOW, FADES_HIGH, parted[min(particle[slot * VECTORS].x, arrayLength(&parted) - 1u)]);
+    }
+    if has_left(particle[slot * VECTORS].x) {
+        seen = 0.0;
     }
     var a = rest[at + 1u];
     var b = rest[at + 2u];

@@ -39,7 +39,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let first = base_node(kinematics[id.x].xyz) - params.origin;
     let tag = bitcast<u32>(matter[3u * params.count + id.x].y);
     let slack = vec3<i32>(params.slack);
-    if (!in_window(first - slack) || !in_window(first + slack)) {
+    let left = has_left(id.x);
+    if (!left && (!in_window(first - slack) || !in_window(first + slack))) {
         atomicStore(&control.window, 1u);
     }
     let low = clamped_cell(first - slack) >> vec3<u32>(2u);
@@ -47,7 +48,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let layer = layer_of(tag);
     let at = clamped_cell(first) >> vec3<u32>(2u);
     let mine = vec2<u32>(block_number(at, sorted_into(tag)), layer);
-    let bits = reached(at, low, high);
+    // What was left behind lies somewhere at the edge: only its own block.
+    let bits = select(reached(at, low, high), 1u << 13u, left);
     // Neighbours mostly share a block, or a few: the lanes of one after the other.
     let lanes = subgroupAdd(1u);
     var waits = true;

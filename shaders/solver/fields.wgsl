@@ -106,7 +106,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
     let time_s = fields.start_s + (substep.since_s + 0.5 * substep.dt_s);
     let here = Here(position.xyz, motion.xyz, own.xyz, time_s, position.w, own.w);
     if (fields.asks != 0u) {
-        let most = subgroupMax(bitcast<vec2<u32>>(largest_change(here, object)));
+        let most = subgroupMax(bitcast<vec2<u32>>(select(largest_change(here, object), vec2<f32>(0.0), has_left(i))));
         if (lane == 0u) {
             atomicMax(&tally.change, most.x);
             atomicMax(&tally.change_whole, most.y);
@@ -114,8 +114,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(subgroup_invocati
         return;
     }
     let change = velocity_change(pull(here, object, alive), substep.dt_s);
-    let v = driven(here.v, change);
-    if (alive) {
+    let left = has_left(i);
+    let v = select(driven(here.v, change), vec3<f32>(0.0), left);
+    if (alive && !left) {
         kinematics[n + i] = vec4<f32>(v, motion.w);
         if (!finite3(change) || distance(v, here.v + change) > 1e-3 * FIELD_SPEED) {
             atomicAdd(&tally.limited, 1u);

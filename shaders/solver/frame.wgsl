@@ -56,7 +56,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         pack2x16float(vec2<f32>(a.z, b.x)),
         pack2x16float(b.yz),
         pack2x16float(c.xy),
-        pack2x16float(vec2<f32>(c.z, s.flow)),
+        pack2x16float(vec2<f32>(c.z, select(s.flow, -1.0, has_left(i)))),
     );
-    velocity[particle] = vec4<f32>(kinematics[n + i].xyz, volume_ratio(s, matter[3u * n + i].w, determinant(elastic)));
+    let v = select(kinematics[n + i].xyz, vec3<f32>(0.0), has_left(i));
+    velocity[particle] = vec4<f32>(v, volume_ratio(s, matter[3u * n + i].w, determinant(elastic)));
 }

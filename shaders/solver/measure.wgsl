@@ -14,7 +14,7 @@ fn ordered(value: f32) -> u32 {
 
 @compute @workgroup_size(WORKGROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if (id.x >= params.count) {
+    if (id.x >= params.count || has_left(id.x)) {
         return;
     }
     let i = id.x;

@@ -92,7 +92,7 @@ fn main(
     let base = base_node(x);
     let first = base - params.origin;
     let inside = in_window(first);
-    if (!inside) {
+    if (!inside && !has_left(i)) {
         atomicStore(&control.window, 1u);
     }
     let label = matter[3u * params.count + i];

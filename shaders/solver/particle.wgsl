@@ -22,7 +22,12 @@ fn read_deformation(i: u32) -> mat3x3<f32> {
     return transpose(mat3x3<f32>(matter[i].xyz, matter[n + i].xyz, matter[2u * n + i].xyz));
 }
 
-// Whether a rigid body moves the particle: it then takes no part in what soft matter does.
+// Whether it takes no part in what soft matter does: a rigid body moves it, or it was left behind.
 fn is_rigid(tag: u32) -> bool {
     return (tag >> 31u) != 0u;
+}
+
+// Whether the particle was left behind: nothing moves it, and it asks for no room.
+fn has_left(i: u32) -> bool {
+    return is_rigid(bitcast<u32>(matter[3u * params.count + i].y)) && matter[2u * params.count + i].w == 0.0;
 }

@@ -29,7 +29,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let tag = matter[3u * n + id.x];
-    if (!is_rigid(bitcast<u32>(tag.y))) {
+    if (!is_rigid(bitcast<u32>(tag.y)) || has_left(id.x)) {
         return;
     }
     let anchor = anchors[bitcast<u32>(tag.x)];

@@ -18,7 +18,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let i = id.x;
     let tag = matter[3u * n + i];
-    if (!is_rigid(bitcast<u32>(tag.y))) {
+    if (!is_rigid(bitcast<u32>(tag.y)) || has_left(i)) {
         return;
     }
     let anchor = anchors[bitcast<u32>(tag.x)];

@@ -152,7 +152,11 @@ impl Solver {
                 if tries.room > 1 {
                     (tries.room, tries.room_most) = (tries.room / 2, tries.room / 2);
                 } else if tries.trips == 0 {
-                    return Err(error);
+                    if !self.leave_behind(&error, margin, report)? {
+                        return Err(error);
+                    }
+                    self.backup();
+                    seen = self.look()?;
                 } else if self.shorten(&error, &mut tries) {
                     (seen.driven_m_s, seen.drift_m_s) = calm;
                 } else if self.give_way(0, &mut tries, report)? {

@@ -82,7 +82,7 @@ impl Solver {
         let mut unstressed: Vec<Rows> = self.gpu.read(&self.unstressed, states.len())?;
         let mut shown = self.shown()?;
         let (mut bodies_change, mut poured) = (false, Vec::new());
-        for (i, state) in states.iter_mut().enumerate().filter(|(i, s)| picked[*i] && s.object() == object) {
+        for (i, state) in states.iter_mut().enumerate().filter(|(i, s)| picked[*i] && s.object() == object && !s.has_left()) {
             let softer = state.lambda_pa + 2.0 * state.mu_pa;
             let stored = stored_pa(&self.laws.substances[state.substance()], state);
             (state.mu_pa, state.lambda_pa) = moduli.of(state.mu_pa, state.lambda_pa);

@@ -212,6 +212,11 @@ impl Solver {
         GridKind { layers: self.params.layers, wet: self.liquid.is_some(), meets: self.rigid.is_some() && self.soft, evens: self.volume.is_some() }
     }
 
+    /// Blocks that a window may have, all layers together.
+    pub(super) fn spread_most(&self) -> u64 {
+        allowed_spread(&self.gpu)
+    }
+
     /// Makes the window hold stencils from `low` to `high` with room around them.
     pub(super) fn fit_window(&mut self, low: IVec3, high: IVec3, margin: i32) -> Result<(), SolverError> {
         if self.window.is_some_and(|w| w.holds(low, high, margin)) {

@@ -23,6 +23,7 @@ mod grip;
 mod impact;
 mod kept;
 mod laws;
+mod leave;
 mod liquid;
 mod mend;
 mod obstacles;
@@ -59,7 +60,7 @@ pub use impact::Sight;
 pub use obstacles::is_inside;
 pub use substance::{Activation, Flow, Substance, liquid_bulk_pa};
 pub use types::{
-    Advance, Collider, Field, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError, Taut,
+    Advance, Collider, Field, Left, ObjectForce, Particles, PinRegion, Placement, Plane, PrestressReport, Settings, Softened, SolverError, Taut,
 };
 
 /// Every pass of the solver, for validation and keys.
@@ -87,4 +88,4 @@ pub fn shader_text() -> String {
 }
 
 /// Raised whenever the same input gives other bits.
-pub const VERSION: u32 = 38;
+pub const VERSION: u32 = 39;

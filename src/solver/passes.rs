@@ -56,7 +56,7 @@ macro_rules! passes {
 passes! {
     /// The passes of MLS-MPM; [`super::transfer`] has those that depend on the device.
     Passes;
-    bin: ["control", "cell", "bin"] [Read, Read, Read, Write, Write, Write] 0;
+    bin: ["control", "cell", "particle", "bin"] [Read, Read, Read, Write, Write, Write] 0;
     scan_sums: ["chunk", "scan", "scan_sums"] [Read, Read, Write] 0;
     scan_blocks: ["control", "chunk", "scan", "scan_blocks"] [Write, Write, Read, Write, Write, Write, Write, Write] 0;
     count: ["cell", "count"] [Read, Read, Read, Write] 0;

@@ -46,9 +46,24 @@ impl ParticleState {
         (self.tag >> 16 & 0x7fff) as usize
     }
 
-    /// Whether a rigid body moves it.
+    /// Whether it takes no part in what soft matter does: a rigid body moves it, or it was left behind.
     pub fn is_rigid(&self) -> bool {
         self.tag & RIGID_TAG != 0
+    }
+
+    /// Whether it was left behind: it takes part in nothing, and stays where it was last.
+    pub fn has_left(&self) -> bool {
+        self.is_rigid() && self.volume_m3 == 0.0
+    }
+
+    /// The same, left behind.
+    pub fn left(self) -> ParticleState {
+        ParticleState { velocity_m_s: Vec3::ZERO, affine: [0.0; 9], mu_pa: 0.0, lambda_pa: 0.0, volume_m3: 0.0, tag: self.tag | RIGID_TAG, ..self }
+    }
+
+    /// Whether it is a rigid body's.
+    pub fn is_of_body(&self) -> bool {
+        self.is_rigid() && !self.has_left()
     }
 
     /// Makes it of the substance of a row.

@@ -249,6 +249,15 @@ pub struct Softened {
     pub reason: String,
 }
 
+/// What of an object flew farther apart than the grid holds, and is no longer followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Left {
+    /// How many particles.
+    pub particles: u64,
+    /// How far from the rest the farthest was when it was left.
+    pub away_m: f32,
+}
+
 /// How an advance went.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Advance {
@@ -272,6 +281,8 @@ pub struct Advance {
     pub limited: u64,
     /// How often particles of an object lost their strain, or their speed, as the last resort.
     pub mended: BTreeMap<u32, u64>,
+    /// What was left behind, by object.
+    pub left: BTreeMap<u32, Left>,
     /// Whether a rigid body touched more things at one time than the dozen that are followed from its side: the deepest counted.
     pub unmet: bool,
 }

@@ -1,5 +1,6 @@
 //! What was measured of a run: the content of `metrics.json`.
 
+use crate::solver::Left;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -66,8 +67,34 @@ pub struct SolverMetrics {
     /// its speed there.
     #[serde(default)]
     pub mended: BTreeMap<String, u64>,
+    /// What of each object flew farther from the rest than the grid holds and is no longer followed: it weighs nothing from then
+    /// on, is not seen, and counts in no other number. Empty where all was followed.
+    #[serde(default)]
+    pub left: BTreeMap<String, LeftMetrics>,
     /// Wall seconds of the simulation.
     pub simulate_s: f64,
+}
+
+/// What of an object is no longer followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct LeftMetrics {
+    /// How many particles.
+    pub particles: u64,
+    /// How far from the rest the farthest of them was when it was left.
+    pub away_m: f64,
+}
+
+impl LeftMetrics {
+    /// With what left later.
+    pub(super) fn add(&mut self, later: &LeftMetrics) {
+        *self = LeftMetrics { particles: self.particles + later.particles, away_m: self.away_m.max(later.away_m) };
+    }
+}
+
+impl From<Left> for LeftMetrics {
+    fn from(left: Left) -> LeftMetrics {
+        LeftMetrics { particles: left.particles, away_m: left.away_m.into() }
+    }
 }
 
 /// Memory, bytes; 0 where it could not be told.

@@ -28,7 +28,7 @@ mod tests;
 pub use derive::lookup;
 pub use engine::{Engine, Report};
 pub use error::EngineError;
-pub use metrics::{EventMetrics, ExpectationResult, MemoryMetrics, Metrics, ObjectMetrics, SolverMetrics, SubstepRange};
+pub use metrics::{EventMetrics, ExpectationResult, LeftMetrics, MemoryMetrics, Metrics, ObjectMetrics, SolverMetrics, SubstepRange};
 pub use plan::{Action, Plan, PlannedStage, Quality, RunOptions, StageName};
 pub use player::Player;
 pub use still::BUILTIN_DEMO;

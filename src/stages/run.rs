@@ -97,7 +97,7 @@ pub(super) fn run(
     engine.store.pin("head", made.into_iter().chain(motion).filter(|(stage, key)| engine.store.contains(stage, key)))?;
     warnings.extend(done.totals.said.iter().cloned());
     let of_solver = summary::of_forces(&done.totals, spec).into_iter().chain(summary::of_contacts(&done.totals));
-    let of_solver: Vec<String> = of_solver.chain(summary::of_mended(&done.totals)).collect();
+    let of_solver: Vec<String> = of_solver.chain(summary::of_mended(&done.totals)).chain(summary::of_left(&done.totals)).collect();
     of_solver.iter().for_each(|w| sink.warning(w));
     warnings.extend(of_solver);
     summary::of_impacts(spec, &done.totals, ready.resolved.cell_m, done.stopped).iter().for_each(|n| sink.note(n));

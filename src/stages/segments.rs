@@ -4,7 +4,7 @@
 //! versions that agree until some moment share everything before it: an edit at 1.2 s goes on from
 //! the state at the end of the last common segment, and a longer duration appends.
 
-use super::{EngineError, keys, pack};
+use super::{EngineError, LeftMetrics, keys, pack};
 use crate::spec::Spec;
 use crate::store::{BlobWriter, Entry, EntryWriter, Store};
 use crate::world::measure::Row;
@@ -74,6 +74,9 @@ pub(super) struct SolverTotals {
     /// How often particles of an object lost their strain or speed as the last resort, by name.
     #[serde(default)]
     pub mended: BTreeMap<String, u64>,
+    /// What of each object flew out of what is followed, by name.
+    #[serde(default)]
+    pub left: BTreeMap<String, LeftMetrics>,
     /// Whether a rigid body touched more things than are followed.
     #[serde(default)]
     pub unmet: bool,
@@ -106,6 +109,9 @@ impl SolverTotals {
         }
         for (name, times) in &later.mended {
             *self.mended.entry(name.clone()).or_default() += times;
+        }
+        for (name, more) in &later.left {
+            self.left.entry(name.clone()).or_default().add(more);
         }
         for (ours, theirs) in [(&mut self.softened, &later.softened), (&mut self.said, &later.said)] {
             for text in theirs {

@@ -3,7 +3,7 @@
 use super::engine::Ready;
 use super::keys;
 use super::segments::SolverTotals;
-use super::{EventMetrics, ExpectationResult, MemoryMetrics, Metrics, ObjectMetrics, SolverMetrics, SubstepRange, lookup};
+use super::{EventMetrics, ExpectationResult, LeftMetrics, MemoryMetrics, Metrics, ObjectMetrics, SolverMetrics, SubstepRange, lookup};
 use crate::gpu::Gpu;
 use crate::render::View;
 use crate::solver::{Advance, Taut};
@@ -42,6 +42,7 @@ pub(super) fn totals(advance: &Advance, spec: &Spec) -> SolverTotals {
         limited: advance.limited,
         held_m_s: f64::from(advance.held_m_s),
         mended: advance.mended.iter().map(|(object, times)| (name(*object).to_owned(), *times)).collect(),
+        left: advance.left.iter().map(|(object, left)| (name(*object).to_owned(), (*left).into())).collect(),
         unmet: advance.unmet,
         ..SolverTotals::default()
     }
@@ -86,6 +87,19 @@ pub(super) fn of_mended(totals: &SolverTotals) -> Vec<String> {
         )
     };
     totals.mended.iter().map(text).collect()
+}
+
+/// What flew away, in words.
+pub(super) fn of_left(totals: &SolverTotals) -> Vec<String> {
+    let text = |(name, left): (&String, &LeftMetrics)| {
+        let (particles, away_m) = (left.particles, left.away_m);
+        let them = if particles == 1 { "1 particle flew up to".to_owned() } else { format!("{particles} particles flew up to") };
+        format!(
+            "{name}: {them} {away_m:.3} m away from the rest, farther than the grid holds, and are no longer followed: they weigh nothing from then on \
+             and are not seen"
+        )
+    };
+    totals.left.iter().map(text).collect()
 }
 
 /// What contacts were left out, in words.
@@ -173,6 +187,7 @@ pub(super) fn metrics(
             limited: totals.limited,
             held_m_s: totals.held_m_s,
             mended: totals.mended.clone(),
+            left: totals.left.clone(),
             simulate_s: totals.seconds,
         },
         resolved: resolved(spec, ready, matter),

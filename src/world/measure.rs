@@ -16,11 +16,14 @@ pub struct MotionFrame {
     pub deformation: Vec<Mat3>,
     /// Whether each keeps no shape, so that G tells no volume.
     pub loose: Vec<bool>,
+    /// Whether each flew out of what is followed, and counts for nothing.
+    pub left: Vec<bool>,
     /// Empty where only the motion was kept.
     pub velocity_m_s: Vec<Vec3>,
 }
 
-/// Words of one particle in a motion buffer: three f32 of position, nine f16 of G - I, one that is above 0 where it keeps no shape.
+/// Words of one particle in a motion buffer: three f32 of position, nine f16 of G - I, one that is above 0 where it keeps no shape and below 0 where
+/// it is no longer followed.
 pub const MOTION_WORDS: usize = 8;
 
 impl MotionFrame {
@@ -32,6 +35,7 @@ impl MotionFrame {
         MotionFrame {
             position_m: particles.clone().map(|p| Vec3::new(number(&p[0..4]), number(&p[4..8]), number(&p[8..12]))).collect(),
             loose: particles.clone().map(|p| half(p, 9) > 0.5).collect(),
+            left: particles.clone().map(|p| half(p, 9) < -0.5).collect(),
             deformation: particles
                 .map(|p| {
                     let rows: [f32; 9] = std::array::from_fn(|i| half(p, i));
@@ -90,7 +94,34 @@ pub struct Row {
 
 /// Measures every object of one frame.
 pub fn measure(frame: &MotionFrame, bodies: &Bodies) -> Vec<Row> {
+    if frame.left.contains(&true) {
+        let (frame, bodies) = followed(frame, bodies);
+        return measure(&frame, &bodies);
+    }
     bodies.ranges.iter().zip(&bodies.found).map(|(range, &found)| row(frame, bodies, range.clone(), found)).collect()
+}
+
+/// The same without what is no longer followed.
+fn followed(frame: &MotionFrame, bodies: &Bodies) -> (MotionFrame, Bodies) {
+    fn kept<T: Copy>(values: &[T], left: &[bool]) -> Vec<T> {
+        values.iter().zip(left).filter(|(_, left)| !**left).map(|(value, _)| *value).collect()
+    }
+    let left = &frame.left;
+    let stay = |particles: &[bool]| particles.iter().filter(|left| !**left).count();
+    let followed = MotionFrame {
+        position_m: kept(&frame.position_m, left),
+        deformation: kept(&frame.deformation, left),
+        loose: kept(&frame.loose, left),
+        left: vec![false; stay(left)],
+        velocity_m_s: kept(&frame.velocity_m_s, left),
+    };
+    let bodies = Bodies {
+        ranges: bodies.ranges.iter().map(|r| stay(&left[..r.start])..stay(&left[..r.end])).collect(),
+        mass_kg: kept(&bodies.mass_kg, left),
+        volume_m3: kept(&bodies.volume_m3, left),
+        ..bodies.clone()
+    };
+    (followed, bodies)
 }
 
 fn row(frame: &MotionFrame, bodies: &Bodies, range: std::ops::Range<usize>, found: f64) -> Row {
@@ -196,6 +227,7 @@ mod tests {
             velocity_m_s: points.iter().map(|p| omega.cross(*p - centre) + Vec3::X).collect(),
             deformation: vec![Mat3::from_rotation_x(0.7) * Mat3::from_diagonal(Vec3::new(1.0, 1.5, 0.8)); 1000],
             loose: vec![false; 1000],
+            left: vec![false; 1000],
             position_m: points,
         };
         let row = measure(&frame, &bodies)[0];
@@ -208,6 +240,12 @@ mod tests {
         let crowded = MotionFrame { position_m: frame.position_m.iter().map(|p| *p * Vec3::new(1.0, 1.0, 0.5)).collect(), ..poured };
         // A half, and what the uppermost layer of cells has room for.
         assert!((measure(&crowded, &bodies)[0].volume_ratio - 0.6).abs() < 0.01);
+        // A tenth of it that flew far away counts for nothing; what was seen of the rest stays.
+        let far = |i: usize| i % 10 == 9;
+        let position_m = frame.position_m.iter().enumerate().map(|(i, p)| if far(i) { *p + Vec3::splat(1e3) } else { *p }).collect();
+        let torn = MotionFrame { position_m, left: (0..1000).map(far).collect(), ..frame.clone() };
+        let rest = measure(&torn, &bodies)[0];
+        assert!((rest.volume_ratio - 1.2).abs() < 1e-5 && rest.high_m < 1.0 && rest.gap_m == row.gap_m);
         assert!((row.low_m - 0.05).abs() < 1e-6 && (row.high_m - 0.95).abs() < 1e-6 && (row.gap_m - 0.05).abs() < 1e-6);
     }
 

@@ -221,7 +221,7 @@ impl Assembly {
 /// Members of each body, by their index: tags that touch within an object are one.
 fn groups(states: &[ParticleState], cell_m: f32) -> Vec<Vec<usize>> {
     let mut by_tag: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for (i, s) in states.iter().enumerate().filter(|(_, s)| s.is_rigid()) {
+    for (i, s) in states.iter().enumerate().filter(|(_, s)| s.is_of_body()) {
         by_tag.entry(s.object() << 16 | s.substance() as u32).or_default().push(i);
     }
     let mut groups: Vec<Vec<usize>> = Vec::new();

@@ -136,6 +136,11 @@ impl Rigid {
         [&self.bodies, &self.manifolds, &self.contacts]
     }
 
+    /// Particles of each body, by their index.
+    pub fn members(&self) -> Vec<Vec<usize>> {
+        body::members(&self.anchors_host, self.count())
+    }
+
     /// How many bodies there are.
     pub fn count(&self) -> usize {
         self.shapes_host.len()

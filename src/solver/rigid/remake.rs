@@ -12,7 +12,7 @@ use glam::Mat3;
 impl Solver {
     /// Makes all bodies from what particles are now. Momentum and angular momentum stay, and what is seen.
     pub(in crate::solver) fn reassemble(&mut self, states: &mut [ParticleState], unstressed: &mut [Rows]) -> Result<(), SolverError> {
-        for (state, unstressed) in states.iter_mut().zip(unstressed).filter(|(s, _)| s.is_rigid()) {
+        for (state, unstressed) in states.iter_mut().zip(unstressed).filter(|(s, _)| s.is_of_body()) {
             *unstressed = rows(state.f() * from_rows(unstressed));
             state.set_f(Mat3::IDENTITY);
         }
@@ -37,8 +37,8 @@ impl Solver {
             let mut members = vec![0usize; count];
             for (state, anchor) in states.iter().zip(&anchors) {
                 match members.get_mut(anchor[3].to_bits() as usize) {
-                    Some(members) if state.is_rigid() => *members += 1,
-                    None if !state.is_rigid() => {}
+                    Some(members) if state.is_of_body() => *members += 1,
+                    None if !state.is_of_body() => {}
                     _ => return Err(SolverError::Checkpoint { what: "a body without its particles".to_owned() }),
                 }
             }

@@ -154,7 +154,7 @@ impl Sph {
     /// Sums up what the particles are.
     fn survey(&mut self, substances: &[Substance], states: &[ParticleState]) {
         (self.liquids, self.viscosity_pa_s, self.least_density_kg_m3, self.tension_over_density) = (0, 0.0, f32::INFINITY, 0.0);
-        for state in states {
+        for state in states.iter().filter(|s| !s.has_left()) {
             if let Some(Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m }) = substances.get(state.substance()) {
                 let density = state.mass_kg / state.volume_m3;
                 self.liquids += 1;

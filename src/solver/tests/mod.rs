@@ -6,6 +6,7 @@ mod contact;
 mod encounter;
 mod fields;
 pub(super) mod laws;
+mod leave;
 mod library;
 mod liquid;
 mod motion;
