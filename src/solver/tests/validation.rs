@@ -62,6 +62,7 @@ quick_cases! {
     v18_dam_break_of_particles: "V18 SPH";
     v19_pool_of_particles: "V19 SPH";
     v20_channel_of_particles: "V20 SPH";
+    v20_held_out: "V20 SPH held out";
     v22_drops_of_particles: "V22 SPH";
     v24_ball_into_jelly: "V24";
     v24_pairs: "V24 pairs";
@@ -71,5 +72,11 @@ quick_cases! {
     drag: "drag";
     spring: "spring";
     swirl: "swirl";
+    attractor: "attractor";
+    explosion: "explosion";
+    motor: "motor";
+    pin: "pin";
+    impact: "impact";
+    friction: "friction";
     fields_same_bits: "fields";
 }

@@ -11,7 +11,7 @@ use crate::spec::{Acceleration, Auto, Drag, FieldFacts, Force, Spring, Until, Vo
 use glam::{DVec3, Vec3};
 
 /// A block of a tenth of a metre about a point.
-fn body(centre: Vec3, velocity: Vec3) -> Particles {
+pub(super) fn body(centre: Vec3, velocity: Vec3) -> Particles {
     let mut particles = block(centre - Vec3::splat(0.05), Vec3::splat(0.1), 0.025, 5e4, 0.3);
     particles.velocity_m_s.fill(velocity);
     particles
@@ -25,14 +25,14 @@ pub(super) fn field(force: &Force, object: u32) -> Result<Field, SolverError> {
     Ok(Field { name: force.name.clone(), object, from_s: force.from_s, to_s: force.ends_s(), acceleration })
 }
 
-fn under(gpu: &Gpu, particles: &Particles, gravity_m_s2: f32, fill: impl FnOnce(&mut Force)) -> Result<Solver, SolverError> {
+pub(super) fn under(gpu: &Gpu, particles: &Particles, gravity_m_s2: f32, fill: impl FnOnce(&mut Force)) -> Result<Solver, SolverError> {
     let mut force = Force::new("field", "body", 0.0, Until::End);
     fill(&mut force);
     let settings = Settings { gravity_m_s2: Vec3::new(0.0, 0.0, -gravity_m_s2), fields: vec![field(&force, 0)?], ..Settings::new(0.05) };
     Solver::new(gpu, settings, particles)
 }
 
-fn velocity(solver: &Solver) -> Result<DVec3, SolverError> {
+pub(super) fn velocity(solver: &Solver) -> Result<DVec3, SolverError> {
     let states = solver.states()?;
     let mass: f64 = states.iter().map(|s| f64::from(s.mass_kg)).sum();
     Ok(momentum(&states) / mass)

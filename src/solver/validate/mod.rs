@@ -6,6 +6,7 @@ mod coupling;
 mod driven;
 mod films;
 mod flakes;
+mod forced;
 mod free;
 mod grains;
 mod liquid_flow;
@@ -18,6 +19,7 @@ mod rigid;
 mod sliding;
 mod sph;
 mod sph_drops;
+mod sph_held;
 mod spread;
 mod strained;
 mod thick;
@@ -172,6 +174,7 @@ pub const CASES: &[Case] = &[
     Case { name: "V18 SPH", quick: true, run: sph::dam_break },
     Case { name: "V19 SPH", quick: true, run: sph::hydrostatic },
     Case { name: "V20 SPH", quick: true, run: sph::poiseuille },
+    Case { name: "V20 SPH held out", quick: true, run: sph_held::viscous },
     Case { name: "V21 SPH", quick: false, run: sph_drops::swinging },
     Case { name: "V22 SPH", quick: true, run: sph_drops::laplace },
     Case { name: "thread", quick: true, run: thick::thread },
@@ -185,6 +188,12 @@ pub const CASES: &[Case] = &[
     Case { name: "drag", quick: true, run: driven::drag },
     Case { name: "spring", quick: true, run: driven::spring },
     Case { name: "swirl", quick: true, run: driven::vortex },
+    Case { name: "attractor", quick: true, run: forced::orbit },
+    Case { name: "explosion", quick: true, run: forced::blast },
+    Case { name: "motor", quick: true, run: forced::motor },
+    Case { name: "pin", quick: true, run: forced::pin },
+    Case { name: "impact", quick: true, run: forced::impact },
+    Case { name: "friction", quick: true, run: forced::friction },
     Case { name: "fields", quick: true, run: driven::same_bits },
     Case { name: "V24", quick: true, run: rigid::into_jelly },
     Case { name: "V24 pairs", quick: true, run: coupling::pairs },

@@ -14,22 +14,39 @@ const DENSITY_KG_M3: f32 = 1000.0;
 const TENSION_N_M: f32 = 1.0;
 const CELL_M: f32 = 0.01;
 
-/// A sphere about the origin, so many cells in radius, stretched along z at equal volume; and the radius that its
-/// volume has.
-fn drop(cells: f32, stretch: f32, viscosity_pa_s: f32) -> (Particles, f64) {
-    let (d, radius_m) = (0.5 * CELL_M, cells * CELL_M);
-    let substance = Substance::SphLiquid { viscosity_pa_s, surface_tension_n_m: TENSION_N_M };
-    // Off the middle of a cell, as any drop is.
-    let low_m = Vec3::splat(-radius_m - 2.0 * d) + Vec3::new(0.26, 0.14, 0.37) * d;
-    let mut all = keep(&pool(low_m, Vec3::splat(2.0 * radius_m + 4.0 * d), d, DENSITY_KG_M3, 1.0, substance), |x| x.length() < radius_m);
-    let n = all.len();
-    let wide = stretch.sqrt().recip();
-    all.position_m.iter_mut().for_each(|x| *x *= Vec3::new(wide, wide, stretch));
-    (all, (3.0 * n as f64 * f64::from(d).powi(3) / (4.0 * std::f64::consts::PI)).cbrt())
+/// A sphere about the origin, stretched along z at equal volume.
+#[derive(Clone, Copy, Debug)]
+struct Drop {
+    /// Its radius in cells.
+    cells: f32,
+    cell_m: f32,
+    stretch: f32,
+    viscosity_pa_s: f32,
+    tension_n_m: f32,
 }
 
-fn weightless() -> Settings {
-    Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) }
+impl Drop {
+    /// Round, thin, as most of them are.
+    fn new(cells: f32) -> Drop {
+        Drop { cells, cell_m: CELL_M, stretch: 1.0, viscosity_pa_s: 0.0, tension_n_m: TENSION_N_M }
+    }
+
+    /// Its particles, and the radius that their volume has.
+    fn particles(&self) -> (Particles, f64) {
+        let (d, radius_m) = (0.5 * self.cell_m, self.cells * self.cell_m);
+        let substance = Substance::SphLiquid { viscosity_pa_s: self.viscosity_pa_s, surface_tension_n_m: self.tension_n_m };
+        // Off the middle of a cell, as any drop is.
+        let low_m = Vec3::splat(-radius_m - 2.0 * d) + Vec3::new(0.26, 0.14, 0.37) * d;
+        let mut all = keep(&pool(low_m, Vec3::splat(2.0 * radius_m + 4.0 * d), d, DENSITY_KG_M3, 1.0, substance), |x| x.length() < radius_m);
+        let n = all.len();
+        let wide = self.stretch.sqrt().recip();
+        all.position_m.iter_mut().for_each(|x| *x *= Vec3::new(wide, wide, self.stretch));
+        (all, (3.0 * n as f64 * f64::from(d).powi(3) / (4.0 * std::f64::consts::PI)).cbrt())
+    }
+
+    fn weightless(&self) -> Settings {
+        Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(self.cell_m) }
+    }
 }
 
 fn middle(states: &[ParticleState]) -> DVec3 {
@@ -61,8 +78,9 @@ pub(super) fn laplace(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         ["V22 SPH pressure in a drop of 5 cells", "V22 SPH roundness of a drop of 5 cells"],
     ];
     for ([name, round], cells) in names.into_iter().zip([3.5, 5.0]) {
-        let (particles, radius_m) = drop(cells, 1.0, 0.05);
-        let mut solver = Solver::new(gpu, weightless(), &particles)?;
+        let drop = Drop { viscosity_pa_s: 0.05, ..Drop::new(cells) };
+        let (particles, radius_m) = drop.particles();
+        let mut solver = Solver::new(gpu, drop.weightless(), &particles)?;
         let (mut pressure, samples) = (0.0, 10);
         for k in 0..samples {
             solver.advance(0.12 + 0.012 * f64::from(k), &Stop::default())?;
@@ -82,11 +100,20 @@ pub(super) fn laplace(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     Ok(checks)
 }
 
-/// V21: a drop of four cells' radius that was stretched by a tenth swings about the sphere.
+/// V21: a drop of four cells' radius that was stretched by a tenth swings about the sphere; and, from which no constant was set,
+/// one of five smaller cells with a fifth of the tension.
 pub(super) fn swinging(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
-    let (particles, radius_m) = drop(4.0, 1.1, 0.0);
-    let mut solver = Solver::new(gpu, weightless(), &particles)?;
-    let omega = (8.0 * f64::from(TENSION_N_M) / (f64::from(DENSITY_KG_M3) * radius_m.powi(3))).sqrt();
+    let (small, big) = ("V21 SPH swinging drop", "V21 SPH swinging drop of 5 cells, 0.2 N/m");
+    Ok(vec![
+        swing(gpu, small, &Drop { stretch: 1.1, ..Drop::new(4.0) })?,
+        swing(gpu, big, &Drop { cell_m: 0.006, tension_n_m: 0.2, stretch: 1.1, ..Drop::new(5.0) })?,
+    ])
+}
+
+fn swing(gpu: &Gpu, name: &'static str, drop: &Drop) -> Result<Check, SolverError> {
+    let (particles, radius_m) = drop.particles();
+    let mut solver = Solver::new(gpu, drop.weightless(), &particles)?;
+    let omega = (8.0 * f64::from(drop.tension_n_m) / (f64::from(DENSITY_KG_M3) * radius_m.powi(3))).sqrt();
     let period_s = std::f64::consts::TAU / omega;
     let (mut measured, mut expected) = (Vec::new(), Vec::new());
     let mut first = 0.0;
@@ -111,6 +138,6 @@ pub(super) fn swinging(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
         expected,
         measured,
     };
-    let check = Check::new("V21 SPH swinging drop", "omega^2 = 8 sigma / (rho R^3)", "Rayleigh 1879, mode 2", "1/s");
-    Ok(vec![check.compare(omega, swing, 0.1).with_plot(plot)])
+    let check = Check::new(name, "omega^2 = 8 sigma / (rho R^3)", "Rayleigh 1879, mode 2", "1/s");
+    Ok(check.compare(omega, swing, 0.1).with_plot(plot))
 }
