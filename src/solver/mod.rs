@@ -16,6 +16,7 @@ mod change;
 mod checkpoint;
 mod constants;
 mod core;
+mod corners;
 mod encounter;
 mod fields;
 mod grid;
@@ -72,6 +73,7 @@ pub fn kernels() -> Vec<KernelSource> {
     all.extend(fields::kernels());
     all.extend(liquid::kernels());
     all.extend(volume::kernels());
+    all.extend(corners::kernels());
     all.extend(sph::kernels());
     all.extend(rigid::all_kernels());
     all
