@@ -61,8 +61,6 @@ struct Params {
     // What stands inside a surface comes out of it by so much in a substep, m: a jump would take it out of the order of
     // its cells, or through whatever is beyond.
     push_m: f32,
-    // Marks of colliders beside the ground that a node has; 0 where none meet and one is enough.
-    corners: u32,
     // Layer of each object, four bits each.
     layer_of: array<u32, DEALT / 8u>,
     // Where each block of the window is stored, layer after layer.

@@ -6,7 +6,7 @@ struct Collider {
     at: vec4<f32>,
     // Half the edges of a box, the unit normal of a plane, the axis of a capsule, none of a sphere; w: its radius.
     shape: vec4<f32>,
-    // Friction, restitution, its place among the marks of a node in a corner.
+    // Friction, restitution.
     surface: vec4<f32>,
 }
 

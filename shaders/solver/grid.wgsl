@@ -11,8 +11,6 @@
 @group(0) @binding(7) var<storage, read_write> control: Control;
 // Mass of each node where there are several layers, in units of the sums; negative where it is pinned.
 @group(0) @binding(8) var<storage, read_write> masses: array<f32>;
-// As in `corner.wgsl`.
-@group(0) @binding(9) var<storage, read_write> corners: array<u32>;
 var<immediate> substep: Substep;
 
 // A node may approach as far as the nearest of its particles has room; then the normal part goes, or
@@ -43,58 +41,6 @@ fn weigh(node: u32, mass: f32) {
     }
 }
 
-// The k-th of the marks that a node has of colliders beside the ground.
-fn solid(node: u32, k: u32) -> u32 {
-    if (params.corners == 0u) {
-        return marks[node].y;
-    }
-    return corners[node * params.corners + k];
-}
-
-fn forget_marks(node: u32) {
-    marks[node] = vec2<u32>(0u);
-    for (var k = 0u; k < params.corners; k++) {
-        corners[node * params.corners + k] = 0u;
-    }
-}
-
-// A velocity among all that the node meets, the ground last; and how far walls hold what slides along them. Of walls beside the ground
-// the nearest alone brakes: how thick a film is, is known of that one.
-fn met(start: vec3<f32>, x: vec3<f32>, at: Node) -> vec4<f32> {
-    let near = marks[at.index];
-    var v = start;
-    var held = 0.0;
-    var contacts = u32(near.x != 0u);
-    for (var k = 0u; k < max(params.corners, 1u); k++) {
-        let mark = solid(at.index, k);
-        if (mark != 0u) {
-            v = respond(v, mark, x);
-            contacts++;
-        }
-    }
-    if (near.y != 0u) {
-        v = braked(v, near.y, x, at);
-        held = max(held, held_by(near.y, x, at));
-    }
-    if (near.x != 0u) {
-        v = braked(respond(v, near.x, x), near.x, x, at);
-        held = max(held, held_by(near.x, x, at));
-    }
-    // Once more: what answers to one may approach another.
-    if (contacts > 1u) {
-        for (var k = 0u; k < max(params.corners, 1u); k++) {
-            let mark = solid(at.index, k);
-            if (mark != 0u) {
-                v = respond(v, mark, x);
-            }
-        }
-        if (near.x != 0u) {
-            v = respond(v, near.x, x);
-        }
-    }
-    return vec4<f32>(v, held);
-}
-
 fn settle(at: Node) {
     let node = at.index;
     let sum = sums[node];
@@ -106,21 +52,28 @@ fn settle(at: Node) {
         if (any(sum != vec4<i32>(0))) {
             sums[node] = vec4<i32>(0);
         }
-        forget_marks(node);
+        marks[node] = vec2<u32>(0u);
         velocity[node] = vec4<f32>(0.0);
         weigh(node, 0.0);
         return;
     }
+    let mark = marks[node];
     sums[node] = vec4<i32>(0);
+    marks[node] = vec2<u32>(0u);
     let momentum_unit = momentum_units(substep.index, substep.lag);
     var v = vec3<f32>(sum.xyz) * (params.mass_units / momentum_unit) / f32(sum.w);
     let x = position_of(at);
     v += substep.dt_s * (params.gravity_m_s2 + liquid_pull(at).xyz);
-    let answer = met(v, x, at);
-    forget_marks(node);
-    v = answer.xyz;
-    var held = answer.w;
+    var held = 0.0;
     var mass = f32(sum.w);
+    if (mark.y != 0u) {
+        v = braked(respond(v, mark.y, x), mark.y, x, at);
+        held = max(held, held_by(mark.y, x, at));
+    }
+    if (mark.x != 0u) {
+        v = braked(respond(v, mark.x, x), mark.x, x, at);
+        held = max(held, held_by(mark.x, x, at));
+    }
     if (params.pin_count > 0u) {
         let pin = pinned(x, at.layer);
         v = select(v, pin.xyz, pin.w > 0.0);

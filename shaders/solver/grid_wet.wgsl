@@ -1,7 +1,7 @@
 // Acceleration by surface tension, m/s^2; kinematic viscosity, m^2/s.
-@group(0) @binding(10) var<storage, read> pull: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read> pull: array<vec4<f32>>;
 // Thickness of the liquid that walls brake; the same again where that is a film as a whole, metres.
-@group(0) @binding(11) var<storage, read> film: array<vec2<f32>>;
+@group(0) @binding(10) var<storage, read> film: array<vec2<f32>>;
 
 // Of liquid alone: what else is at the node is on another layer, and its surface is not the liquid's.
 fn liquid_pull(node: Node) -> vec4<f32> {

@@ -8,19 +8,19 @@ struct Near {
 // The mark of the nearest of a span of colliders, 0 where none is in reach.
 fn nearest(first: u32, end: u32, x: vec3<f32>, rest_m: f32, shears: bool) -> Near {
     var near = Near(0u, vec3<f32>(0.0));
-    var nearest_m = 1e30;
     for (var c = first; c < end; c++) {
         let t = touch(colliders[c], x);
         if (t.distance_m > params.reach_m + REST_CELLS_MAX * params.cell_m) {
             continue;
         }
         let gap_m = t.distance_m - rest_m;
-        // By distance: the marks of all that are nearer than they rest are alike.
-        if (gap_m < params.reach_m && t.distance_m < nearest_m) {
+        if (gap_m < params.reach_m) {
             // Without a shear modulus there is no Coulomb friction either.
             let slips = select(SLIPS, 0u, shears);
-            nearest_m = t.distance_m;
-            near = Near(pack_mark(gap_m, (c * 8u + t.face) | slips), surface_normal(colliders[c], t.face, x));
+            let mark = pack_mark(gap_m, (c * 8u + t.face) | slips);
+            if (mark > near.mark) {
+                near = Near(mark, surface_normal(colliders[c], t.face, x));
+            }
         }
     }
     return near;

@@ -41,8 +41,6 @@ pub const GAP_STEPS: f32 = 1_048_576.0;
 pub const SLIPS: u32 = 1024;
 /// Contact is marked from this far off, in cells: a particle moves less in a substep.
 pub const REACH_CELLS: f32 = 0.75;
-/// Marks of colliders beside the ground that a node may have where colliders meet: the sides of a box.
-pub const CORNERS_MOST: u32 = 6;
 /// Rest offsets of sampled particles end here, in cells: standing on its support, a particle is
 /// about that far from it.
 pub const REST_CELLS: f32 = 0.25;

@@ -4,7 +4,6 @@ use super::budget;
 use super::constants::{
     BLOCK_SLACK_CELLS, DEALT, FEW_PARTICLES, FIXED_BITS, LEAST_SPEED_M_S, PUSH_SHARE, REACH_CELLS, SLACK_CELLS, TILE_LANES, WORKGROUP,
 };
-use super::corners::{self, CornerPasses};
 use super::encounter::{Encounter, Layers};
 use super::fields::Fields;
 use super::grid::{GROUPS_MOST, GridBuffers, Window, params_buffer};
@@ -60,7 +59,6 @@ pub(super) struct Params {
     pub speed_most: f32,
     pub wet_layers: u32,
     pub push_m: f32,
-    pub corners: u32,
     pub layer_of: [u32; DEALT as usize / 8],
 }
 
@@ -91,8 +89,6 @@ pub struct Solver {
     pub(super) liquid: Option<LiquidPasses>,
     /// Of what is nearly incompressible, where anything is.
     pub(super) volume: Option<VolumePasses>,
-    /// Of corners, where colliders meet.
-    pub(super) corners: Option<CornerPasses>,
     pub(super) object_count: u32,
     /// What each pin holds.
     pub(super) grips: Vec<Grip>,
@@ -148,7 +144,6 @@ impl Solver {
         let mut params = Params {
             count: n as u32,
             collider_count: colliders.len() as u32,
-            corners: corners::places(&colliders),
             gravity_m_s2: settings.gravity_m_s2.into(),
             cell_m: settings.cell_m,
             per_m: 1.0 / settings.cell_m,
@@ -186,7 +181,6 @@ impl Solver {
             laws: Laws::new(gpu)?,
             liquid: None,
             volume: None,
-            corners: (params.corners > 0).then(|| CornerPasses::new(gpu)),
             control: gpu.storage::<Control>("solver.control", 1)?,
             buffers: [StateBuffers::new(gpu, "solver.even", n)?, StateBuffers::new(gpu, "solver.odd", n)?],
             current: 0,

@@ -4,7 +4,7 @@
 //! each sort (`bin.wgsl`, `scan_blocks.wgsl`). A window costs but a few bytes a block, for the map behind
 //! `Params`.
 
-use super::constants::{CORNERS_MOST, SCAN_LANES, SCAN_RUN, TILE_LANES};
+use super::constants::{SCAN_LANES, SCAN_RUN, TILE_LANES};
 use super::core::{Params, Solver};
 use super::liquid::LiquidFields;
 use super::types::SolverError;
@@ -55,8 +55,6 @@ pub(super) struct GridBuffers {
     pub kind: GridKind,
     pub sums: wgpu::Buffer,
     pub marks: wgpu::Buffer,
-    /// More of them, where colliders meet.
-    pub corners: wgpu::Buffer,
     pub velocity: wgpu::Buffer,
     /// Where there are several layers.
     pub masses: wgpu::Buffer,
@@ -95,7 +93,6 @@ const NODE_BYTES: u64 = 52;
 const LAYER_BYTES: u64 = 4;
 const MEETING_BYTES: u64 = (size_of::<Near>() + size_of::<Meeting>()) as u64;
 const GAIN_BYTES: u64 = 8;
-const CORNER_BYTES: u64 = 4;
 /// Bytes for one block of the window, and of the map.
 const SPREAD_BYTES: u64 = 12;
 /// A software adapter shares the machine's memory and is slow over much of it.
@@ -122,8 +119,6 @@ pub(super) struct GridKind {
     pub meets: bool,
     /// Whether anything is nearly incompressible.
     pub evens: bool,
-    /// Marks of a node where colliders meet, else 0.
-    pub corners: u32,
 }
 
 /// Bytes that a grid may take.
@@ -146,9 +141,8 @@ fn allowed_blocks(gpu: &Gpu, kind: GridKind) -> u64 {
         + more(kind.layers > 1, LAYER_BYTES)
         + more(kind.meets, MEETING_BYTES)
         + more(kind.wet, LiquidFields::NODE_BYTES)
-        + more(kind.evens, GAIN_BYTES)
-        + CORNER_BYTES * u64::from(kind.corners);
-    (widest_buffer(gpu) / if kind.meets { 64 } else { 4 * u64::from(CORNERS_MOST) }).min(allowed_bytes(gpu) / bytes) / 64 - 4
+        + more(kind.evens, GAIN_BYTES);
+    (widest_buffer(gpu) / if kind.meets { 64 } else { 16 }).min(allowed_bytes(gpu) / bytes) / 64 - 4
 }
 
 /// Blocks that a window may have, all layers together.
@@ -169,7 +163,6 @@ impl GridBuffers {
             kind,
             sums: gpu.storage::<[i32; 4]>("solver.sums", nodes)?,
             marks: gpu.storage::<[u32; 2]>("solver.marks", nodes)?,
-            corners: gpu.storage::<u32>("solver.corners", if kind.corners > 0 { nodes * kind.corners as usize } else { 4 })?,
             velocity: gpu.storage::<[f32; 4]>("solver.velocity", nodes)?,
             masses: gpu.storage::<f32>("solver.masses", if kind.layers > 1 { nodes } else { 1 })?,
             cell_count: gpu.storage::<u32>("solver.cell_count", nodes)?,
@@ -189,7 +182,7 @@ impl GridBuffers {
 
     /// What a segment that went wrong may have left behind.
     pub fn dirty(&self) -> impl Iterator<Item = &wgpu::Buffer> {
-        [&self.sums, &self.marks, &self.corners, &self.cell_count, &self.block_info]
+        [&self.sums, &self.marks, &self.cell_count, &self.block_info]
             .into_iter()
             .chain(self.liquid.as_ref().map(|l| &l.fill))
             .chain(self.meeting.as_ref().map(|m| &m.nears))
@@ -216,13 +209,7 @@ pub(super) fn params_buffer(gpu: &Gpu, params: &Params, spread: usize) -> Result
 impl Solver {
     /// What the scene asks of its grid now.
     pub(super) fn grid_kind(&self) -> GridKind {
-        GridKind {
-            layers: self.params.layers,
-            wet: self.liquid.is_some(),
-            meets: self.rigid.is_some() && self.soft,
-            evens: self.volume.is_some(),
-            corners: self.params.corners,
-        }
+        GridKind { layers: self.params.layers, wet: self.liquid.is_some(), meets: self.rigid.is_some() && self.soft, evens: self.volume.is_some() }
     }
 
     /// Blocks that a window may have, all layers together.

@@ -18,7 +18,7 @@ use crate::gpu::{Gpu, Recording};
 passes! {
     /// Passes that only scenes with something wet have; `grid_wet` takes the place of `grid`.
     LiquidPasses;
-    grid_wet: ["control", "substep", "contact", "node", "pin", "grid_wet", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Write, Read, Read] SUBSTEP;
+    grid_wet: ["control", "substep", "contact", "node", "pin", "grid_wet", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Read, Read] SUBSTEP;
     liquid_wall: ["contact", "node", "wall", "liquid_wall"] [Read, Read, Read, Write] 0;
     liquid_fill: ["substance", "particle", "liquid_fill"] [Read, Read, Read, Read, Write] 0;
     liquid_share: ["contact", "node", "room", "liquid_share"] [Read, Read, Read, Write, Write, Write] 0;

@@ -16,7 +16,6 @@ mod change;
 mod checkpoint;
 mod constants;
 mod core;
-mod corners;
 mod encounter;
 mod fields;
 mod grid;
@@ -73,7 +72,6 @@ pub fn kernels() -> Vec<KernelSource> {
     all.extend(fields::kernels());
     all.extend(liquid::kernels());
     all.extend(volume::kernels());
-    all.extend(corners::kernels());
     all.extend(sph::kernels());
     all.extend(rigid::all_kernels());
     all

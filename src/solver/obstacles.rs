@@ -1,6 +1,5 @@
 //! Static colliders and pins as the kernels read them, and the same geometry on the CPU.
 
-use super::corners;
 use super::grip::Pose;
 use super::types::{PinRegion, Settings};
 use crate::spec::ColliderShape;
@@ -56,9 +55,7 @@ pub(super) fn colliders(settings: &Settings) -> Vec<ColliderRecord> {
         let (at, shape) = geometry(&c.shape, 0.0);
         ColliderRecord { at, shape, surface: [c.friction, c.restitution, 0.0, 0.0] }
     });
-    let mut all: Vec<ColliderRecord> = ground.into_iter().chain(others).collect();
-    corners::place(&mut all, usize::from(settings.ground.is_some()), settings.cell_m);
-    all
+    ground.into_iter().chain(others).collect()
 }
 
 /// A pin holds the nodes up to half a cell around its shape, so that it holds what is in it, and at
@@ -115,28 +112,6 @@ impl ColliderRecord {
     fn off_axis(&self, x: Vec3) -> Vec3 {
         let (d, axis) = (x - Vec3::from_slice(&self.at), Vec3::from_slice(&self.shape));
         d - axis * (d.dot(axis) / axis.length_squared().max(1e-30)).clamp(0.0, 1.0)
-    }
-
-    /// Its place among the marks of a node in a corner.
-    pub fn corner(&self) -> u32 {
-        self.surface[2] as u32
-    }
-
-    /// The box around it; none of a plane.
-    pub fn span(&self) -> Option<(Vec3, Vec3)> {
-        let (at, shape) = (Vec3::from_slice(&self.at), Vec3::from_slice(&self.shape));
-        match self.at[3] as u32 {
-            0 => None,
-            2 => Some((at.min(at + shape) - self.shape[3], at.max(at + shape) + self.shape[3])),
-            _ => Some((at - shape, at + shape)),
-        }
-    }
-
-    /// Whether a place is beside a face of a box and not beyond its edges, by so much.
-    #[cfg(test)]
-    pub fn is_beside_face(&self, face: u32, x: Vec3, within_m: f32) -> bool {
-        let within = Vec3::from_slice(&self.shape) - (x - Vec3::from_slice(&self.at)).abs() - within_m;
-        self.at[3] != 1.0 || (0..3).all(|axis| axis == (face & 3) as usize || within[axis] > 0.0)
     }
 
     /// Signed distance to the surface and the face that is nearest.

@@ -65,7 +65,7 @@ passes! {
     order: ["control", "hand_on", "order"] [Read, Read, Read, Read, Write, Write, Read, Read, Write, Read] 0;
     regroup: ["control", "cell", "hand_on", "regroup"] [Read, Read, Read, Write, Write, Read, Read, Write] 0;
     stress: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "stress"] [Read, Write, Read, Write, Read] SUBSTEP;
-    grid: ["control", "substep", "contact", "node", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write, Write] SUBSTEP;
+    grid: ["control", "substep", "contact", "node", "pin", "grid_dry", "grid"] [Read, Read, Read, Read, Write, Write, Write, Write, Write] SUBSTEP;
     measure: ["control", "substance", "particle", "measure"] [Read, Read, Read, Write, Read] 0;
     kick: ["particle", "particle_write", "kick_of", "kick"] [Read, Write, Read] KICK;
     prestress_gather: ["control", "substep", "substance", "material", "elastic_only", "particle", "particle_write", "prestress", "gather", "prestress_gather"] [Read, Write, Write, Read, Write, Read] SUBSTEP;

@@ -30,8 +30,6 @@ pub(super) struct Bound {
     regroup: wgpu::BindGroup,
     pub stress: wgpu::BindGroup,
     pub grid: wgpu::BindGroup,
-    /// Where colliders meet.
-    pub corner: Option<wgpu::BindGroup>,
     pub transfers: TransferBound,
     pub liquid: Option<LiquidBound>,
     pub volume: Option<VolumeBound>,
@@ -96,7 +94,6 @@ impl Solver {
             if substep.lag == 0 {
                 self.record_p2g(b, substep, recording);
             }
-            self.record_corner(b.corner.as_ref(), recording);
             self.rigid.iter().zip(&b.rigid).for_each(|(r, b)| r.record_meeting(b, substep, groups, recording));
             recording.indirect_with(&passes.grid, &b.grid, substep, &b.active_groups, 0);
             if let Some(liquid) = &b.liquid {
@@ -168,7 +165,6 @@ impl Solver {
             &grid.velocity,
             control,
             &grid.masses,
-            &grid.corners,
         ];
         on_grid.extend(grid.liquid.iter().flat_map(|l| [&l.pull, &l.film]));
         Bound {
@@ -205,7 +201,6 @@ impl Solver {
                 .bind(&p.regroup, &[params, kinematics, matter, &other.kinematics, &other.matter, &grid.block_start, &self.number_in_block, control]),
             stress: gpu.bind(&p.stress, &stress[..if laws.all { 6 } else { 5 }]),
             grid: gpu.bind(&p.grid, &on_grid),
-            corner: self.bind_corner(grid, state),
             liquid: self.bind_liquid(grid, state),
             volume: self.bind_volume(grid, state),
             transfers: self.transfers.bind(self, grid, state),

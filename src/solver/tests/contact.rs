@@ -121,47 +121,6 @@ fn nothing_enters_a_box_or_a_sphere() {
     assert!(centre_m(&solver).z > 0.1, "it went through the table to {}", centre_m(&solver));
 }
 
-fn plane(point_m: Vec3, normal: Vec3) -> Collider {
-    let shape = ColliderShape::Plane(PlaneShape { point_m: point_m.as_dvec3().into(), normal: normal.as_dvec3().into() });
-    Collider { shape, friction: 0.0, restitution: 0.0 }
-}
-
-#[test]
-fn a_node_in_a_corner_answers_to_both_walls() {
-    let size_m = Vec3::splat(0.3);
-    let particles = block(Vec3::ZERO, size_m, 0.025, 2e5, 0.3);
-    let mut settings = on_ground(0.0, 0.0);
-    settings.colliders = vec![plane(Vec3::ZERO, Vec3::X), plane(Vec3::ZERO, Vec3::Y)];
-    let mut solver = solver(settings, &particles);
-    solver.set_velocity(0, Vec3::new(-1.0, -1.0, -1.0));
-    // A substep, before any stress: a wall takes as much from what is in a corner as from what is beside it alone.
-    solver.advance(2e-4, &Stop::default()).expect("an advance");
-    let states = solver.states().expect("states");
-    let at =
-        |x: Vec3| (0..states.len()).find(|&i| (particles.position_m[i] - x).length() < 1e-3).map(|i| states[i].velocity_m_s).expect("a particle");
-    let near_m = 0.0125;
-    let alone = at(Vec3::new(near_m, 0.1625, 0.1625)).x;
-    assert!(alone > -0.5, "beside one wall, {alone}");
-    for place in [Vec3::new(near_m, near_m, 0.1625), Vec3::new(near_m, 0.1625, near_m), Vec3::splat(near_m)] {
-        let v = at(place);
-        let near = [(place.x, v.x), (place.y, v.y), (place.z, v.z)].into_iter().filter(|(x, _)| *x == near_m);
-        near.for_each(|(_, v)| assert!((v - alone).abs() < 0.02, "{v} m/s towards a wall at {place}, {alone} beside one alone"));
-    }
-}
-
-#[test]
-fn what_slides_from_one_box_to_the_next_meets_no_wall() {
-    let tile = |x: f64| ColliderShape::Box(BoxShape { centre_m: [x, 0.0, -0.1], size_m: [0.4, 1.0, 0.2] });
-    let colliders = [0.0, 0.4, 0.8].map(|x| Collider { shape: tile(x), friction: 0.0, restitution: 0.0 }).into();
-    let particles = block(Vec3::new(-0.15, -0.1, 0.0), Vec3::new(0.2, 0.2, 0.1), 0.025, 2e5, 0.3);
-    let mut solver = solver(Settings { colliders, ..Settings::new(CELL_M) }, &particles);
-    assert!(solver.params.corners > 1, "places of their own");
-    solver.set_velocity(0, Vec3::X);
-    solver.advance(0.6, &Stop::default()).expect("an advance");
-    let v = velocity_m_s(&solver);
-    assert!((v - Vec3::X).length() < 0.01, "{v}");
-}
-
 #[test]
 fn a_force_lasts_as_long_as_it_says() {
     let mut settings = Settings { gravity_m_s2: Vec3::ZERO, ..Settings::new(CELL_M) };

@@ -112,7 +112,6 @@ fn follows_the_twins(substances: [Substance; 2]) {
     run(|r| r.dispatch_with(&passes.stress, &b.stress, &SUBSTEP, groups));
     twin::stress(&mut states, &around, DT_S);
     run(|r| solver.record_p2g(b, &SUBSTEP, r));
-    run(|r| solver.record_corner(b.corner.as_ref(), r));
     let mut want = twin::p2g(&states, &around);
     run(|r| r.indirect_with(&passes.grid, &b.grid, &SUBSTEP, &grid.active_groups, 0));
     for (node, value) in want.iter_mut() {

@@ -255,7 +255,6 @@ pub(super) fn follows_the_twins_on(device: &Gpu, substances: [Substance; 2]) {
 
     // Particles to grid.
     run(|r| solver.record_p2g(b, &SUBSTEP, r));
-    run(|r| solver.record_corner(b.corner.as_ref(), r));
     let want = twin::p2g(&states, &around);
     let stored = Stored::of(&solver);
     let grid = solver.grid.clone().expect("a grid");

@@ -9,7 +9,7 @@ pub mod sort;
 pub mod sph;
 pub mod volume;
 
-use super::constants::{CORNERS_MOST, F_MOST, FILM_LEAST, GAP_STEPS, REST_CELLS_MAX, SLIPS, WALL_FRICTION, WALL_GRIP, WALL_SOON_S};
+use super::constants::{F_MOST, FILM_LEAST, GAP_STEPS, REST_CELLS_MAX, SLIPS, WALL_FRICTION, WALL_GRIP, WALL_SOON_S};
 use super::core::Params;
 use super::obstacles::{ColliderRecord, PinRecord};
 use super::state::ParticleState;
@@ -24,8 +24,6 @@ pub struct Node {
     pub mass: f64,
     /// Contact marks of the ground and of the other colliders.
     pub marks: [u32; 2],
-    /// Where colliders meet, of each place.
-    pub corners: [u32; CORNERS_MOST as usize],
     pub velocity: Vec3,
     /// Of surface tension.
     pub pull_m_s2: Vec3,
@@ -105,55 +103,33 @@ pub fn p2g(states: &[ParticleState], around: &Surroundings) -> Grid {
             node.momentum += (s.velocity_m_s.as_dvec3() * f64::from(s.mass_kg) + a * d.as_dvec3()) * weight;
             node.mass += f64::from(s.mass_kg) * weight;
             for (mark, found) in node.marks.iter_mut().zip(found) {
-                *mark = (*mark).max(mark_on(found, d, params));
+                let Some((value, normal)) = found else { continue };
+                if normal.dot(d) <= 0.5 {
+                    *mark = (*mark).max(value);
+                } else if value & SLIPS != 0 || params.wet_layers != 0 {
+                    *mark = (*mark).max(1 << 11 | (value & 2047));
+                }
             }
-        }
-        if params.corners > 0 {
-            corner(s, around, &mut grid);
         }
     }
     grid
 }
 
-/// `corner.wgsl`: what a particle marks of each collider that it is near.
-fn corner(s: &ParticleState, around: &Surroundings, grid: &mut Grid) {
-    let (params, ground) = (&around.params, around.params.has_ground as usize);
-    let own = nearest(s, &around.colliders[ground..], ground, params);
-    for (c, collider) in around.colliders.iter().enumerate().skip(ground) {
-        let found = nearest(s, std::slice::from_ref(collider), c, params);
-        let beside = |mark: u32| collider.is_beside_face(mark & 7, s.position_m, 0.5 * params.cell_m);
-        if found.is_none_or(|found| Some(found) != own && !beside(found.0)) {
-            continue;
-        }
-        for (node, _, d) in stencil(s.position_m, params) {
-            let mark = &mut grid.entry(node).or_default().corners[collider.corner() as usize];
-            *mark = (*mark).max(mark_on(found, d, params));
-        }
-    }
-}
-
-/// The mark of a contact on a node so far from its particle.
-fn mark_on(found: Option<(u32, Vec3)>, d: Vec3, params: &Params) -> u32 {
-    match found {
-        Some((mark, normal)) if normal.dot(d) <= 0.5 => mark,
-        Some((mark, _)) if mark & SLIPS != 0 || params.wet_layers != 0 => 1 << 11 | (mark & 2047),
-        _ => 0,
-    }
-}
-
 /// The mark of the nearest collider in reach, and its normal.
 fn nearest(s: &ParticleState, colliders: &[ColliderRecord], first: usize, params: &Params) -> Option<(u32, Vec3)> {
-    let (mut best, mut nearest_m) = (None, f32::INFINITY);
+    let mut best: Option<(u32, Vec3)> = None;
     for (c, collider) in colliders.iter().enumerate() {
         let touch = collider.touch(s.position_m);
         let gap_m = touch.distance_m - s.rest_m;
-        if touch.distance_m > params.reach_m + REST_CELLS_MAX * params.cell_m || gap_m >= params.reach_m || touch.distance_m >= nearest_m {
+        if touch.distance_m > params.reach_m + REST_CELLS_MAX * params.cell_m || gap_m >= params.reach_m {
             continue;
         }
         let slips = if s.mu_pa == 0.0 { SLIPS } else { 0 };
         let near = 1.0 - (gap_m / params.reach_m).clamp(0.0, 1.0);
         let mark = (((near * GAP_STEPS) as u32 + 1) << 11) | ((c + first) as u32 * 8 + touch.face) | slips;
-        (best, nearest_m) = (Some((mark, collider.normal(touch.face, s.position_m))), touch.distance_m);
+        if best.is_none_or(|(most, _)| mark > most) {
+            best = Some((mark, collider.normal(touch.face, s.position_m)));
+        }
     }
     best
 }
@@ -168,18 +144,11 @@ pub fn grid(grid: &mut Grid, layer: u32, around: &Surroundings, dt_s: f32, since
     for (node, value) in grid.iter_mut() {
         let x = Vec3::new(node[2] as f32, node[1] as f32, node[0] as f32) * around.params.cell_m;
         let mut v = (value.momentum / value.mass).as_vec3() + (Vec3::from(around.params.gravity_m_s2) + value.pull_m_s2) * dt_s;
-        let solids = if around.params.corners > 0 { value.corners.to_vec() } else { vec![value.marks[1]] };
-        let solids: Vec<u32> = solids.into_iter().filter(|mark| *mark != 0).collect();
-        let all = |v: Vec3, marks: &[u32]| marks.iter().fold(v, |v, &mark| respond(v, mark, x, around, dt_s));
-        v = all(v, &solids);
-        for (mark, stands) in [(value.marks[1], false), (value.marks[0], true)].into_iter().filter(|(mark, _)| *mark != 0) {
-            v = if stands { respond(v, mark, x, around, dt_s) } else { v };
-            v = braked(v, mark, x, around, dt_s, value);
-            value.held = value.held.max(held_by(mark, x, around, dt_s, value));
-        }
-        let ground: Vec<u32> = value.marks[..1].iter().copied().filter(|mark| *mark != 0).collect();
-        if solids.len() + ground.len() > 1 {
-            v = all(all(v, &solids), &ground);
+        for mark in [value.marks[1], value.marks[0]] {
+            if mark != 0 {
+                v = braked(respond(v, mark, x, around, dt_s), mark, x, around, dt_s, value);
+                value.held = value.held.max(held_by(mark, x, around, dt_s, value));
+            }
         }
         if let Some(pin) = around.pins.iter().find(|pin| pinned(pin, layer, x, since_s)) {
             (v, value.held) = (Vec3::from_slice(&pin.velocity), 0.0);

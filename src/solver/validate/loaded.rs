@@ -1,12 +1,12 @@
 //! Bodies under their own weight: V5 and V7.
 
-use super::bodies::{block, mean_of, walls};
+use super::bodies::{block, mean_of};
 use super::waves::frequency_hz;
 use super::{Check, Plot};
 use crate::Stop;
 use crate::gpu::Gpu;
 use crate::solver::core::Solver;
-use crate::solver::types::{Particles, PinRegion, Plane, Settings, SolverError};
+use crate::solver::types::{Particles, PinRegion, Settings, SolverError};
 use crate::spec::{ColliderShape, PlaneShape};
 use glam::Vec3;
 
@@ -225,34 +225,7 @@ pub(super) fn column(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     ];
     let check = |(name, formula, column): (_, _, Column)| {
         let (expected, measured) = column.shortens(gpu)?;
-        Ok::<Check, SolverError>(Check::new(name, formula, source, "m").compare(expected, measured, 0.03))
+        Ok(Check::new(name, formula, source, "m").compare(expected, measured, 0.03))
     };
-    let mut checks = rows.into_iter().map(check).collect::<Result<Vec<_>, _>>()?;
-    checks.push(confined(gpu)?);
-    Ok(checks)
-}
-
-/// A column that stands between four smooth walls on smooth ground: it cannot give way sideways, not in the corners either.
-fn confined(gpu: &Gpu) -> Result<Check, SolverError> {
-    let (height_m, width_m, young_pa, poisson) = (0.8f64, 0.2f32, 5e5f64, 0.3f64);
-    let modulus_pa = young_pa * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-    let size_m = Vec3::new(width_m, width_m, height_m as f32);
-    let particles = block(Vec3::ZERO, size_m, SPACING_M, young_pa as f32, poisson as f32);
-    let mut settings = Settings::new(CELL_M);
-    settings.ground = Some(Plane { height_m: 0.0, friction: 0.0, restitution: 0.0 });
-    settings.colliders = walls(Vec3::ZERO, size_m);
-    let mut solver = Solver::new(gpu, settings, &particles)?;
-    let half = 0.5 * f64::from(SPACING_M);
-    let (low, high) = (4.0 * f64::from(SPACING_M) + half, height_m - half);
-    let layer = |z: f64| (0..particles.len()).filter(|&i| (f64::from(particles.position_m[i].z) - z).abs() < 0.1 * half).collect::<Vec<_>>();
-    let (bottom, top) = (layer(low), layer(high));
-    let height = |solver: &Solver, layer: &[usize]| mean_of(solver, layer, |s| f64::from(s.position_m.z));
-    let length = |solver: &Solver| Ok::<f64, SolverError>(height(solver, &top)? - height(solver, &bottom)?);
-    let start = length(&solver)?;
-    let period_s = 4.0 * height_m / (modulus_pa / DENSITY_KG_M3).sqrt();
-    let shorter: Vec<f64> = mean_over(&mut solver, 2.0 * period_s, 48, |solver| Ok(vec![start - length(solver)?]))?;
-    let load = |z: f64| DENSITY_KG_M3 * GRAVITY_M_S2 * (height_m * z - 0.5 * z * z);
-    let check =
-        Check::new("V7 column between walls", "rho g (H z - z^2 / 2) / (lambda + 2 mu) between two heights", "Hooke's law at uniaxial strain", "m");
-    Ok(check.compare((load(high) - load(low)) / modulus_pa, shorter[0], 0.03))
+    rows.into_iter().map(check).collect()
 }
