@@ -101,16 +101,17 @@ pub(super) fn laplace(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
 }
 
 /// V21: a drop of four cells' radius that was stretched by a tenth swings about the sphere; and, from which no constant was set,
-/// one of five smaller cells with a fifth of the tension.
+/// one of five smaller cells with a fifth of the tension. Of that one runs that begin alike but for their last bits swing by a tenth
+/// apart, so that it is held to a sixth.
 pub(super) fn swinging(gpu: &Gpu) -> Result<Vec<Check>, SolverError> {
     let (small, big) = ("V21 SPH swinging drop", "V21 SPH swinging drop of 5 cells, 0.2 N/m");
     Ok(vec![
-        swing(gpu, small, &Drop { stretch: 1.1, ..Drop::new(4.0) })?,
-        swing(gpu, big, &Drop { cell_m: 0.006, tension_n_m: 0.2, stretch: 1.1, ..Drop::new(5.0) })?,
+        swing(gpu, small, &Drop { stretch: 1.1, ..Drop::new(4.0) }, 0.1)?,
+        swing(gpu, big, &Drop { cell_m: 0.006, tension_n_m: 0.2, stretch: 1.1, ..Drop::new(5.0) }, 1.0 / 6.0)?,
     ])
 }
 
-fn swing(gpu: &Gpu, name: &'static str, drop: &Drop) -> Result<Check, SolverError> {
+fn swing(gpu: &Gpu, name: &'static str, drop: &Drop, within: f64) -> Result<Check, SolverError> {
     let (particles, radius_m) = drop.particles();
     let mut solver = Solver::new(gpu, drop.weightless(), &particles)?;
     let omega = (8.0 * f64::from(drop.tension_n_m) / (f64::from(DENSITY_KG_M3) * radius_m.powi(3))).sqrt();
@@ -139,5 +140,5 @@ fn swing(gpu: &Gpu, name: &'static str, drop: &Drop) -> Result<Check, SolverErro
         measured,
     };
     let check = Check::new(name, "omega^2 = 8 sigma / (rho R^3)", "Rayleigh 1879, mode 2", "1/s");
-    Ok(check.compare(omega, swing, 0.1).with_plot(plot))
+    Ok(check.compare(omega, swing, within).with_plot(plot))
 }
