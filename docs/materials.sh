@@ -15,6 +15,7 @@ mkdir -p "$films" "$work"
 table='camera={ eye_m = [0.55, -1.3, 1.05], target_m = [0, 0, 0.62], fov_deg = 42 }'
 floor='camera={ eye_m = [0.9, -1.9, 1.5], target_m = [0, 0, 0.32], fov_deg = 45 }'
 side='camera={ eye_m = [1.9, 0.6, 1.5], target_m = [0, 0.3, 0.32], fov_deg = 45 }'
+ahead='camera={ eye_m = [1.4, -2.0, 1.5], target_m = [0.5, -0.05, 0.3], fov_deg = 45 }'
 tall='camera={ eye_m = [1.3, -2.7, 1.7], target_m = [0, 0, 0.75], fov_deg = 45 }'
 
 # Its name, where it is seen from, what is said, and what else is set.
@@ -35,7 +36,7 @@ film() {
 muscle='object.vase.material={ kind = "muscle", young_pa = 3e5, activation = { period_s = 0.8, most = 0.5 } }'
 
 film jelly  "$table" "The vase is of jelly. Make it jump 5 cm." "$@"
-film rubber "$floor" "The vase is of rubber and is thrown 50 cm forward." "$@"
+film rubber "$ahead" "The vase is of rubber and is thrown 50 cm forward." "$@"
 film muscle "$table" "It lasts 2 s." --set "$muscle" "$@"
 film dough  "$tall"  "Turn the vase into dough and drop it from 30 cm." "$@"
 film clay   "$tall"  "Turn the vase into clay and drop it from 1 m." "$@"
