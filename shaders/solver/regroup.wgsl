@@ -21,7 +21,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         hand_on(id.x, id.x);
         return;
     }
-    let at = clamped_cell(base_node(kinematics[id.x].xyz) - params.origin) >> vec3<u32>(2u);
-    let block = params.slots[block_number(at, sorted_into(bitcast<u32>(matter[3u * params.count + id.x].y)))];
-    hand_on(id.x, block_start[block] + number_in_block[id.x]);
+    let tag = bitcast<u32>(matter[3u * params.count + id.x].y);
+    let cell = stored(clamped_cell(base_node(kinematics[id.x].xyz) - params.origin), sorted_into(tag));
+    hand_on(id.x, block_start[cell >> 6u] + number_in_block[id.x]);
 }
