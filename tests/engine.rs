@@ -61,7 +61,7 @@ fn actions(report: &Report) -> Vec<Action> {
 }
 
 fn engine(folder: &Path, name: &str) -> Engine {
-    Engine::new(Store::open(Some(&folder.join(name)), folder).unwrap(), DeviceRequest::default())
+    Engine::new(Store::open(&folder.join(name)).unwrap(), DeviceRequest::default())
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn spec(folder: &Path) -> Spec {
 }
 
 fn run(spec: &Spec, folder: &Path) -> Report {
-    let mut engine = Engine::new(Store::open(Some(&folder.join("store")), folder).unwrap(), DeviceRequest::default());
+    let mut engine = Engine::new(Store::open(&folder.join("store")).unwrap(), DeviceRequest::default());
     let options = RunOptions { render: false, ..RunOptions::default() };
     let report = engine.run(spec, folder, &options, None, &mut Deaf, &Stop::default()).unwrap();
     assert_eq!(report.metrics.solver.nonfinite, 0);

@@ -69,6 +69,37 @@ pub fn write_atomic(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::
     pending.finish()
 }
 
+/// Removes from a folder the temporary files of processes that are gone: `.NAME.PID-N.tmp`.
+pub fn remove_leftovers(folder: &Path) {
+    let Ok(listing) = fs::read_dir(folder) else { return };
+    for child in listing.filter_map(Result::ok) {
+        if child.file_name().to_str().and_then(process_of).is_some_and(|process| !is_alive(process)) {
+            // What cannot be removed now is tried again the next time.
+            let _ = fs::remove_file(child.path());
+        }
+    }
+}
+
+/// The process that a temporary file is of.
+fn process_of(name: &str) -> Option<u32> {
+    let (process, count) = name.strip_prefix('.')?.strip_suffix(".tmp")?.rsplit_once('.')?.1.split_once('-')?;
+    count.parse::<u32>().ok().and(process.parse().ok())
+}
+
+#[cfg(unix)]
+fn is_alive(process: u32) -> bool {
+    use rustix::process::{Pid, test_kill_process};
+    let found = i32::try_from(process).ok().and_then(Pid::from_raw).map(test_kill_process);
+    // A process that may not be signalled is alive too.
+    !matches!(found, None | Some(Err(rustix::io::Errno::SRCH)))
+}
+
+/// Without a way to ask, nothing is removed.
+#[cfg(not(unix))]
+fn is_alive(_: u32) -> bool {
+    true
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -92,5 +123,21 @@ mod tests {
         let error = write_atomic(&folder.path().join("out/0000.png"), |_| Ok(())).unwrap_err().to_string();
         assert!(error.contains("0000.png") && error.contains("--out"), "{error}");
         assert!(write_atomic(Path::new("/"), |_| Ok(())).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn leftovers_of_dead_processes_go_and_all_else_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut child = std::process::Command::new("true").spawn().unwrap();
+        child.wait().unwrap();
+        let dead = format!(".0000.png.{}-3.tmp", child.id());
+        let alive = format!(".0000.png.{}-3.tmp", std::process::id());
+        for name in [&dead, &alive, ".notes.tmp", "0000.png"] {
+            fs::write(folder.path().join(name), b"").unwrap();
+        }
+        remove_leftovers(folder.path());
+        let left = |name: &str| folder.path().join(name).exists();
+        assert!(!left(&dead) && left(&alive) && left(".notes.tmp") && left("0000.png"));
     }
 }

@@ -14,7 +14,7 @@ mod raster;
 mod sheet;
 mod vp8;
 
-pub use atomic::write_atomic;
+pub use atomic::{remove_leftovers, write_atomic};
 pub use compare::{Comparison, Tolerance, compare};
 pub use error::ExportError;
 pub use exr::write_exr;

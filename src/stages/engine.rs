@@ -43,6 +43,8 @@ pub struct Report {
     pub stopped: bool,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// The stored results that it needs to be shown again: stage and key.
+    pub results: Vec<(&'static str, String)>,
 }
 
 /// Everything that is known before motion.

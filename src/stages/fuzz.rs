@@ -133,7 +133,7 @@ pub fn checks(gpu: &Gpu, size: Size, seeds: Range<u64>, told: &mut dyn FnMut(&Ou
 }
 
 fn open(gpu: &Gpu, folder: &Path) -> Result<Engine, EngineError> {
-    let store = Store::open(Some(&folder.join("store")), folder)?.with_cap(STORE_BYTES);
+    let store = Store::open(&folder.join("store"))?.with_cap(STORE_BYTES);
     let mut engine = Engine::new(store, DeviceRequest::default());
     engine.gpu = Some(gpu.clone());
     Ok(engine)

@@ -5,12 +5,11 @@ use super::motion::Motion;
 use super::{Action, EngineError, Metrics, Plan, RunOptions, StageName, pack, summary};
 use crate::gpu::Gpu;
 use crate::spec::{Auto, Spec};
-use crate::store::{BlobReader, Entry, Store, StoreError};
+use crate::store::{BlobReader, Entry, Store};
 use crate::world::bodies::{Matter, matter};
 use crate::world::{Figure, asked_in_vain};
 use crate::{Frame, Sink, Stop, render, skin, solver};
 use std::collections::BTreeMap;
-use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::time::Instant;
 
@@ -92,9 +91,8 @@ pub(super) fn run(
     for stage in &mut plan.stages {
         stage.seconds = seconds.get(&stage.stage).copied();
     }
-    let motion = ready.segments.iter().map(|s| ("motion", s.key.as_str()));
-    let made = [("scene", ready.keys.scene.as_str()), ("proxy", &ready.keys.proxy), ("bind", &ready.keys.bind), ("picture", &ready.picture)];
-    engine.store.pin("head", made.into_iter().chain(motion).filter(|(stage, key)| engine.store.contains(stage, key)))?;
+    let results = results(engine, &ready);
+    engine.store.pin("head", results.iter().map(|(stage, key)| (*stage, key.as_str())))?;
     warnings.extend(done.totals.said.iter().cloned());
     let of_solver = summary::of_forces(&done.totals, spec).into_iter().chain(summary::of_contacts(&done.totals));
     let of_solver: Vec<String> = of_solver.chain(summary::of_mended(&done.totals)).chain(summary::of_left(&done.totals)).collect();
@@ -111,7 +109,15 @@ pub(super) fn run(
     let crushed = summary::of_crushed(spec, &metrics);
     crushed.iter().for_each(|w| sink.warning(w));
     warnings.extend(crushed);
-    Ok(Report { plan, metrics, camera: ready.resolved.camera, stopped: done.stopped, warnings })
+    Ok(Report { plan, metrics, camera: ready.resolved.camera, stopped: done.stopped, warnings, results })
+}
+
+/// What the store has of everything that a run is made of.
+fn results(engine: &Engine, ready: &Ready) -> Vec<(&'static str, String)> {
+    let keys = &ready.keys;
+    let made = [("scene", &keys.scene), ("proxy", &keys.proxy), ("prestress", &ready.prestress), ("bind", &keys.bind), ("picture", &ready.picture)];
+    let all = made.into_iter().chain(ready.segments.iter().map(|s| ("motion", &s.key)));
+    all.filter(|(stage, key)| engine.store.contains(stage, key)).map(|(stage, key)| (stage, key.clone())).collect()
 }
 
 /// Whether the store has all pictures.
@@ -187,11 +193,6 @@ impl Album {
     }
 
     fn read(&self, blob: &mut BlobReader, start: u64, end: u64) -> Result<Vec<u8>, EngineError> {
-        let mut png = vec![0; (end - start) as usize];
-        let read = blob.seek(SeekFrom::Start(start)).and_then(|_| blob.read_exact(&mut png));
-        match (read, self.entry.path(FRAMES)) {
-            (Ok(()), _) => Ok(png),
-            (Err(source), path) => Err(StoreError::Io { doing: "read", path: path?, source }.into()),
-        }
+        Ok(blob.read_range(start, (end - start) as usize)?)
     }
 }

@@ -19,7 +19,7 @@ use std::path::Path;
 /// over all Gaussians, at each of some frames.
 fn seen_moving(spec: &Spec, base: &Path, frames: &[u32]) -> Vec<f32> {
     let folder = tempfile::tempdir().unwrap();
-    let mut engine = Engine::new(Store::open(Some(folder.path()), folder.path()).unwrap(), DeviceRequest::default());
+    let mut engine = Engine::new(Store::open(folder.path()).unwrap(), DeviceRequest::default());
     let options = RunOptions { quality: Some(Quality::Draft), ..Default::default() };
     let ready = engine.ready(spec, base, &options).unwrap();
     let solids = engine.solids(spec, &ready).unwrap().value;
@@ -111,7 +111,7 @@ fn twigs(folder: &Path) -> (Engine, Spec) {
     (spec.time.duration_s, spec.time.fps) = (Auto::Value(0.5), 20);
     spec.solver.cells_across = Auto::Value(10);
     spec.output.size = Auto::Value([48, 32]);
-    (Engine::new(Store::open(Some(&folder.join("store")), folder).unwrap(), DeviceRequest::default()), spec)
+    (Engine::new(Store::open(&folder.join("store")).unwrap(), DeviceRequest::default()), spec)
 }
 
 #[test]

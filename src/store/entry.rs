@@ -1,15 +1,15 @@
 //! A finished entry: named blobs with their sizes and checksums, and what the stage said of them.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, FileTimes};
+use std::fs::{File, FileTimes, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::StoreError;
+use super::folder::{Folder, Kind};
 
 /// Lists an entry's blobs; written last.
 pub(super) const MANIFEST: &str = "entry.json";
@@ -35,58 +35,57 @@ pub(super) struct Manifest {
 /// What a stage kept under a key. While it lives it is in use and not evicted.
 #[derive(Debug)]
 pub struct Entry {
-    path: PathBuf,
+    folder: Folder,
     manifest: Manifest,
     // Holds the shared lock.
     _used: File,
 }
 
 impl Manifest {
-    /// Writes it into an entry's folder.
-    pub(super) fn write(&self, folder: &Path) -> Result<(), StoreError> {
-        let path = folder.join(MANIFEST);
-        let bytes = serde_json::to_vec(self).map_err(|error| StoreError::damaged(&path, error))?;
+    /// Writes it into an entry's folder; the bytes that took.
+    pub(super) fn write(&self, folder: &Folder) -> Result<u64, StoreError> {
+        let bytes = serde_json::to_vec(self).map_err(|error| StoreError::damaged(&folder.path_of(MANIFEST), error))?;
         let seal = blake3::hash(&bytes).to_hex();
+        folder.write(SEAL, seal.as_bytes())?;
         // The list makes the entry: it comes last.
-        for (name, bytes) in [(SEAL, seal.as_bytes()), (MANIFEST, &bytes)] {
-            let path = folder.join(name);
-            super::write_atomic(&path, bytes).map_err(StoreError::io("written", &path))?;
-        }
-        Ok(())
+        folder.write(MANIFEST, &bytes)?;
+        Ok((bytes.len() + seal.len()) as u64)
     }
 
-    /// Reads it from an entry's folder; none where the entry was evicted meanwhile.
-    fn read(folder: &Path) -> Result<Option<Manifest>, StoreError> {
-        let path = folder.join(MANIFEST);
-        let read = |path: &Path| match fs::read(path) {
-            Ok(bytes) => Ok(Some(bytes)),
-            Err(error) if error.kind() == io::ErrorKind::NotFound && !folder.exists() => Ok(None),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Err(StoreError::damaged(path, "it is missing")),
-            Err(error) => Err(StoreError::io("read", path)(error)),
-        };
-        let (Some(bytes), Some(seal)) = (read(&path)?, read(&folder.join(SEAL))?) else { return Ok(None) };
+    /// Reads it from an entry's folder.
+    fn read(folder: &Folder) -> Result<Manifest, StoreError> {
+        let path = folder.path_of(MANIFEST);
+        let read = |name: &str| folder.read(name)?.ok_or_else(|| StoreError::damaged(&folder.path_of(name), "it is missing"));
+        let (bytes, seal) = (read(MANIFEST)?, read(SEAL)?);
         if blake3::hash(&bytes).to_hex().as_bytes() != seal {
             return Err(StoreError::damaged(&path, "its checksum differs"));
         }
-        let manifest = serde_json::from_value(super::parse(&path, &bytes)?);
-        manifest.map(Some).map_err(|error| StoreError::damaged(&path, error))
+        serde_json::from_slice(&bytes).map_err(|error| StoreError::damaged(&path, error))
+    }
+
+    /// Bytes of all blobs.
+    pub(super) fn bytes(&self) -> u64 {
+        self.blobs.values().map(|blob| blob.bytes).sum()
     }
 }
 
 impl Entry {
-    /// Opens a finished entry, none where there is none; sizes are compared, and the checksum of their list, contents are not.
-    pub(super) fn open_at(path: &Path) -> Result<Option<Entry>, StoreError> {
-        let Some(used) = use_entry(path)? else { return Ok(None) };
-        let Some(manifest) = Manifest::read(path)? else { return Ok(None) };
+    /// Opens a finished entry, none where another process is taking it away; sizes are compared, and the checksum of their
+    /// list, contents are not.
+    pub(super) fn open_in(folder: Folder) -> Result<Option<Entry>, StoreError> {
+        let Some(used) = use_entry(&folder)? else { return Ok(None) };
+        let manifest = Manifest::read(&folder)?;
+        let sizes: BTreeMap<String, u64> =
+            folder.children()?.into_iter().filter(|child| child.kind == Kind::File).map(|child| (child.name, child.bytes)).collect();
         for (name, blob) in &manifest.blobs {
-            let file = path.join(super::checked(name).map_err(|error| StoreError::damaged(&path.join(MANIFEST), error))?);
-            match fs::metadata(&file) {
-                Ok(found) if found.len() == blob.bytes => {}
-                Ok(found) => return Err(StoreError::damaged(&file, format!("{} bytes instead of {}", found.len(), blob.bytes))),
-                Err(error) => return Err(StoreError::damaged(&file, error)),
+            super::checked(name).map_err(|error| StoreError::damaged(&folder.path_of(MANIFEST), error))?;
+            match sizes.get(name) {
+                Some(bytes) if *bytes == blob.bytes => {}
+                Some(bytes) => return Err(StoreError::damaged(&folder.path_of(name), format!("{bytes} bytes instead of {}", blob.bytes))),
+                None => return Err(StoreError::damaged(&folder.path_of(name), "it is missing")),
             }
         }
-        Ok(Some(Entry { path: path.to_owned(), manifest, _used: used }))
+        Ok(Some(Entry { folder, manifest, _used: used }))
     }
 
     /// What the stage said of it.
@@ -112,17 +111,31 @@ impl Entry {
     /// Opens a blob. Read from start to end, its checksum is compared at the end; after a seek no more.
     /// Where it differs, the entry is given up: the next `get` is a miss.
     pub fn open(&self, name: &str) -> Result<BlobReader, StoreError> {
-        let (path, blob) = self.blob(name)?;
-        let file = File::open(&path).map_err(StoreError::io("read", &path))?;
+        let blob = self.blob(name)?;
         let state = Checking { hasher: Box::default(), left: blob.bytes, expected: blob.blake3.clone() };
-        Ok(BlobReader { file: BufReader::with_capacity(1 << 16, file), path, checking: Some(state) })
+        let file = self.file(name)?;
+        Ok(BlobReader { file: BufReader::with_capacity(1 << 16, file), folder: self.folder.clone(), name: name.to_owned(), checking: Some(state) })
     }
 
     /// Reads a whole blob and compares its checksum; where it differs, the entry is given up.
     pub fn read(&self, name: &str) -> Result<Vec<u8>, StoreError> {
-        let (path, blob) = self.blob(name)?;
-        let bytes = fs::read(&path).map_err(StoreError::io("read", &path))?;
-        if blake3::hash(&bytes).to_hex().as_str() == blob.blake3 { Ok(bytes) } else { Err(give_up(&path)) }
+        let blob = self.blob(name)?;
+        let mut bytes = Vec::new();
+        self.file(name)?.read_to_end(&mut bytes).map_err(StoreError::io("read", &self.folder.path_of(name)))?;
+        if blake3::hash(&bytes).to_hex().as_str() == blob.blake3 { Ok(bytes) } else { Err(give_up(&self.folder, name)) }
+    }
+
+    /// Compares every blob with its checksum: the names of those that differ.
+    pub(super) fn damaged_blobs(&self) -> Result<Vec<String>, StoreError> {
+        let mut damaged = Vec::new();
+        for (name, blob) in &self.manifest.blobs {
+            let mut hasher = blake3::Hasher::new();
+            hasher.update_reader(self.file(name)?).map_err(StoreError::io("read", &self.folder.path_of(name)))?;
+            if hasher.finalize().to_hex().as_str() != blob.blake3 {
+                damaged.push(name.clone());
+            }
+        }
+        Ok(damaged)
     }
 
     /// Whether it has all of some blobs, byte for byte.
@@ -130,42 +143,44 @@ impl Entry {
         blobs.iter().all(|(name, blob)| self.manifest.blobs.get(name) == Some(blob))
     }
 
-    /// Where a blob lies, for programs that need a file. Not to be written.
-    pub fn path(&self, name: &str) -> Result<PathBuf, StoreError> {
-        self.blob(name).map(|(path, _)| path)
+    /// Its folder.
+    pub(super) fn folder(&self) -> &Folder {
+        &self.folder
     }
 
-    pub(super) fn blob(&self, name: &str) -> Result<(PathBuf, &Blob), StoreError> {
-        match self.manifest.blobs.get(name) {
-            Some(blob) => Ok((self.path.join(name), blob)),
-            None => Err(StoreError::damaged(&self.path.join(name), "the entry has no such blob")),
-        }
+    pub(super) fn blob(&self, name: &str) -> Result<&Blob, StoreError> {
+        let missing = || StoreError::damaged(&self.folder.path_of(name), "the entry has no such blob");
+        self.manifest.blobs.get(name).ok_or_else(missing)
+    }
+
+    fn file(&self, name: &str) -> Result<File, StoreError> {
+        self.folder.file(name, false)?.ok_or_else(|| StoreError::damaged(&self.folder.path_of(name), "it is missing"))
     }
 }
 
 /// Spoils the entry of a blob whose content is not what was written, so that it is not found again.
-fn give_up(blob: &Path) -> StoreError {
+fn give_up(folder: &Folder, blob: &str) -> StoreError {
     // Where that fails too, the checksum will say the same next time.
-    let _ = fs::remove_file(blob.with_file_name(MANIFEST));
-    StoreError::damaged(blob, "its checksum differs; it will be made anew next time")
+    let _ = folder.remove_file(MANIFEST);
+    StoreError::Spoilt { path: folder.path_of(blob) }
 }
 
-/// Takes the shared lock of an entry and notes the use; none where there is no entry.
-fn use_entry(path: &Path) -> Result<Option<File>, StoreError> {
-    let used_path = path.join(USED);
-    let used = match File::options().read(true).write(true).open(&used_path) {
-        Ok(file) => file,
-        Err(error) if error.kind() == io::ErrorKind::NotFound && !path.exists() => return Ok(None),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(StoreError::damaged(&used_path, "it is missing")),
-        Err(error) => return Err(StoreError::io("opened", &used_path)(error)),
+/// Takes the shared lock of an entry and notes the use; none where another process is taking it away.
+fn use_entry(folder: &Folder) -> Result<Option<File>, StoreError> {
+    let path = folder.path_of(USED);
+    // In a store that cannot be written the lock is taken all the same, and the use is not noted.
+    let used = match folder.file(USED, true) {
+        Err(StoreError::Io { .. }) => folder.file(USED, false)?,
+        opened => opened?,
     };
+    let Some(used) = used else { return Err(StoreError::damaged(&path, "it is missing")) };
     match used.try_lock_shared() {
         Ok(()) => {}
         // On its way out.
-        Err(fs::TryLockError::WouldBlock) => return Ok(None),
-        Err(fs::TryLockError::Error(error)) => return Err(StoreError::io("locked", &used_path)(error)),
+        Err(TryLockError::WouldBlock) => return Ok(None),
+        Err(TryLockError::Error(error)) => return Err(StoreError::io("locked", &path)(error)),
     }
-    used.set_times(FileTimes::new().set_modified(SystemTime::now())).map_err(StoreError::io("touched", &used_path))?;
+    let _ = used.set_times(FileTimes::new().set_modified(SystemTime::now()));
     Ok(Some(used))
 }
 
@@ -173,7 +188,8 @@ fn use_entry(path: &Path) -> Result<Option<File>, StoreError> {
 #[derive(Debug)]
 pub struct BlobReader {
     file: BufReader<File>,
-    path: PathBuf,
+    folder: Folder,
+    name: String,
     checking: Option<Checking>,
 }
 
@@ -184,6 +200,15 @@ struct Checking {
     expected: String,
 }
 
+impl BlobReader {
+    /// Reads some bytes from a place on; no checksum is compared.
+    pub fn read_range(&mut self, start: u64, count: usize) -> Result<Vec<u8>, StoreError> {
+        let mut bytes = vec![0; count];
+        let read = self.seek(SeekFrom::Start(start)).and_then(|_| self.read_exact(&mut bytes));
+        read.map(|()| bytes).map_err(StoreError::io("read", &self.folder.path_of(&self.name)))
+    }
+}
+
 impl Read for BlobReader {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.file.read(buffer)?;
@@ -192,7 +217,7 @@ impl Read for BlobReader {
             checking.left = checking.left.saturating_sub(count as u64);
             let ended = checking.left == 0 || (count == 0 && !buffer.is_empty());
             if ended && checking.hasher.finalize().to_hex().as_str() != checking.expected {
-                return Err(io::Error::new(io::ErrorKind::InvalidData, give_up(&self.path)));
+                return Err(io::Error::new(io::ErrorKind::InvalidData, give_up(&self.folder, &self.name)));
             }
         }
         Ok(count)

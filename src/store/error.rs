@@ -22,13 +22,41 @@ pub enum StoreError {
         /// The folder.
         dir: PathBuf,
     },
+    /// A store that this user neither made nor accepted.
+    #[error(
+        "the store {} is not yours: {why}; its contents decide which files are removed and what is run\n\
+         if you trust it: phystalk store accept {}",
+        dir.display(), dir.display()
+    )]
+    NotAccepted {
+        /// The store.
+        dir: PathBuf,
+        /// "it belongs to user 1000", …
+        why: String,
+    },
+    /// A part of the store that is not what the store makes under that name.
+    #[error("{} is {found}, and a store has {expected} there: phystalk follows and removes nothing through it; take it away and run again", path.display())]
+    Foreign {
+        /// The part.
+        path: PathBuf,
+        /// "a symbolic link", …
+        found: &'static str,
+        /// "a folder" or "a file".
+        expected: &'static str,
+    },
     /// Bytes that are not what was written.
-    #[error("{} is damaged ({why})", path.display())]
+    #[error("{} is damaged ({why}); phystalk store verify --repair mends what can be mended and keeps a copy", path.display())]
     Damaged {
         /// The file or folder.
         path: PathBuf,
         /// What gave it away.
         why: String,
+    },
+    /// A result whose content is not what was written.
+    #[error("{} is damaged (its checksum differs); it is made anew next time", path.display())]
+    Spoilt {
+        /// The file.
+        path: PathBuf,
     },
     /// Another process holds the lock.
     #[error("the store {} is still locked by another process after {waited_s} s: wait for it to end, or use another folder with --store", dir.display())]
@@ -37,6 +65,14 @@ pub enum StoreError {
         dir: PathBuf,
         /// How long it was waited for.
         waited_s: f64,
+    },
+    /// A store that can be read and not written.
+    #[error("the store {} cannot be written to ({why}): it can be read, but nothing can be added; use another folder with --store", dir.display())]
+    ReadOnly {
+        /// The store.
+        dir: PathBuf,
+        /// Why.
+        why: String,
     },
     /// A name that could lead out of the store.
     #[error("`{name}` is not a name in a store: a-z, 0-9, _, - and . inside")]

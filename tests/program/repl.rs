@@ -23,7 +23,7 @@ impl Tmux {
         let socket = format!("phystalk-{name}-{}", std::process::id());
         let program = env!("CARGO_BIN_EXE_phystalk");
         let line = format!(
-            "cd '{}' && {} {command}; echo \"exit code $?\"; stty -a | tr ';' '\\n' | grep -o -- '-\\?icanon'; sleep 60",
+            "cd '{}' && XDG_STATE_HOME=$PWD/state {} {command}; echo \"exit code $?\"; stty -a | tr ';' '\\n' | grep -o -- '-\\?icanon'; sleep 60",
             desk.path("").display(),
             program
         );

@@ -13,7 +13,7 @@ const TURNS: [&str; 5] =
 
 pub fn run(flags: &Flags) -> Result<(), Failure> {
     let out = flags.out.clone().unwrap_or_else(|| PathBuf::from("phystalk-demo"));
-    let mut conversation = setup::converse(Some("builtin:demo"), flags, |_| Some(out.clone()))?;
+    let mut conversation = setup::converse(Some("builtin:demo"), flags, "demo", |_| Some(out.clone()))?;
     let turns: Vec<String> = TURNS.iter().map(|t| (*t).to_owned()).collect();
     let stop = Stop::default();
     let _guard = signals::stop_on_signal(&stop);

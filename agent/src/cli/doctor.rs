@@ -79,6 +79,7 @@ pub fn run(flags: &Flags) -> Result<(), Failure> {
 fn examine(flags: &Flags, gpu: Option<&Gpu>) -> Findings {
     let variable = |name: &str| std::env::var(name).ok().filter(|v| !v.is_empty());
     let multiplexer = [("TMUX", "tmux"), ("ZELLIJ", "zellij"), ("STY", "screen")].into_iter().find(|(v, _)| variable(v).is_some()).map(|(_, n)| n);
+    let (store, of_store) = super::stores::examine(flags);
     let mut findings = Findings {
         version: env!("CARGO_PKG_VERSION"),
         adapters: adapters(),
@@ -90,12 +91,12 @@ fn examine(flags: &Flags, gpu: Option<&Gpu>) -> Findings {
             multiplexer,
             colour: variable("NO_COLOR").is_none(),
         },
-        store: super::store::find(flags),
+        store,
         window: Window { built: cfg!(feature = "window"), display: variable("WAYLAND_DISPLAY").or_else(|| variable("DISPLAY")) },
         providers: vec!["phrasebook"],
         advice: Vec::new(),
     };
-    findings.advice = advice(&findings);
+    findings.advice = advice(&findings).into_iter().chain(of_store).collect();
     findings
 }
 

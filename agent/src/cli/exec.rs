@@ -19,7 +19,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
-    let mut conversation = setup::converse(arguments.scene.as_deref(), flags, |session| Some(setup::default_out(flags, session)))?;
+    let mut conversation = setup::converse(arguments.scene.as_deref(), flags, "exec", |session| Some(setup::default_out(flags, session)))?;
     // The scene of a new session already has the `--set` edits; an old one gets them as a turn.
     let edits = if conversation.resumed { setup::edits(flags)? } else { Vec::new() };
     let stop = Stop::default();

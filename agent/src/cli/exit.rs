@@ -20,6 +20,8 @@ pub enum Kind {
     Device,
     /// The simulation could not be kept stable.
     Unstable,
+    /// A store that the user has not accepted.
+    Approval,
     /// The store is damaged, newer than the program, or locked.
     Store,
     /// An expectation or a golden image failed.
@@ -33,7 +35,7 @@ pub enum Kind {
 }
 
 /// Every kind, for turning a code back into one.
-const KINDS: [Kind; 12] = [
+const KINDS: [Kind; 13] = [
     Kind::Pipe,
     Kind::Other,
     Kind::Usage,
@@ -41,6 +43,7 @@ const KINDS: [Kind; 12] = [
     Kind::NoModel,
     Kind::Device,
     Kind::Unstable,
+    Kind::Approval,
     Kind::Store,
     Kind::Expectation,
     Kind::Bug,
@@ -59,6 +62,7 @@ impl Kind {
             Kind::NoModel => 4,
             Kind::Device => 6,
             Kind::Unstable => 7,
+            Kind::Approval => 9,
             Kind::Store => 10,
             Kind::Expectation => 11,
             Kind::Bug => 70,
@@ -146,7 +150,8 @@ impl From<phystalk::spec::SpecError> for Failure {
 
 impl From<phystalk::store::StoreError> for Failure {
     fn from(error: phystalk::store::StoreError) -> Failure {
-        Failure::new(Kind::Store, error)
+        let kind = if matches!(error, phystalk::store::StoreError::NotAccepted { .. }) { Kind::Approval } else { Kind::Store };
+        Failure::new(kind, error)
     }
 }
 

@@ -16,6 +16,9 @@ pub struct Flags {
     /// Folder for pictures, metrics and specs
     #[arg(long, global = true, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Let the files of another session in the output folder be replaced
+    #[arg(long, global = true)]
+    pub replace: bool,
     /// Folder that keeps versions and results [default: `.phystalk` here or above, else made here]
     #[arg(long, global = true, value_name = "DIR")]
     pub store: Option<PathBuf>,

@@ -2,7 +2,7 @@
 
 use super::exit::{Failure, Kind};
 use super::flags::Flags;
-use super::{output, setup, signals};
+use super::{output, setup, signals, stores};
 use clap::Args;
 use phystalk::export::{Comparison, Raster, Tolerance, compare, read_png, write_png};
 use phystalk::stages::RunOptions;
@@ -68,13 +68,12 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
 /// Runs the spec and keeps the frames that were asked for.
 fn draw(arguments: &Arguments, flags: &Flags) -> Result<BTreeMap<u32, Frame>, Failure> {
     let (spec, _) = setup::spec_by_name(&arguments.what, flags)?;
-    let store = setup::store(flags)?;
-    let camera = if setup::is_spec(&arguments.what) { None } else { setup::session(flags, &store)?.camera() };
+    let camera = if setup::is_file(&arguments.what) { None } else { stores::session(flags)?.1.camera() };
     let stop = Stop::default();
     let _guard = signals::stop_on_signal(&stop);
     let mut keeper = Keeper { wanted: arguments.frames.clone(), kept: BTreeMap::new() };
     let options = RunOptions { render: true, camera, ..flags.run_options() };
-    let report = setup::engine(flags, store).run(&spec, Path::new(""), &options, None, &mut keeper, &stop)?;
+    let report = setup::engine(flags, stores::of_results(flags)?).run(&spec, Path::new(""), &options, None, &mut keeper, &stop)?;
     if let Some(missing) = arguments.frames.iter().find(|f| !keeper.kept.contains_key(f)) {
         return Err(Failure::other(format!("there is no frame {missing}: the last one is {}", report.metrics.frames.saturating_sub(1))));
     }

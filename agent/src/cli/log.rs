@@ -2,13 +2,12 @@
 
 use super::exit::Failure;
 use super::flags::Flags;
-use super::{output, setup};
+use super::{output, stores};
 use crate::history::Session;
 use serde_json::json;
 
 pub fn run(flags: &Flags) -> Result<(), Failure> {
-    let store = setup::store(flags)?;
-    let session = setup::session(flags, &store)?;
+    let (_, session) = stores::session(flags)?;
     if flags.json {
         return output::json(&json!({
             "session": session.name(), "scene": session.base().scene.file, "head": session.head().map(|v| &v.name), "versions": session.versions(),

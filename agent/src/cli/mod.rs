@@ -24,6 +24,7 @@ mod show;
 pub mod signals;
 mod still;
 mod store;
+mod stores;
 mod text;
 mod undo;
 mod validate;
@@ -47,7 +48,7 @@ struct Cli {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 ok · 1 failed · 2 command line · 3 spec or --set · 4 no model · 6 no GPU adapter · 7 not stable · \
-10 store · 11 expectation or golden · 70 a bug · 130, 143 signals";
+9 store not accepted · 10 store · 11 expectation or golden · 70 a bug · 130, 143 signals";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -79,6 +80,8 @@ enum Command {
     Golden(golden::Arguments),
     /// Look at versions: turn, play, compare
     View(view::Arguments),
+    /// The store: size, clean-up, damage and repair, trust
+    Store(store::Arguments),
     /// The solver against formulas and published data, on this device
     Validate(validate::Arguments),
     /// How fast this device is
@@ -135,6 +138,7 @@ fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Still(arguments) => still::run(arguments, flags),
         Command::Golden(arguments) => golden::run(arguments, flags),
         Command::View(arguments) => view::run(arguments, flags),
+        Command::Store(arguments) => store::run(arguments, flags),
         Command::Validate(arguments) => validate::run(arguments, flags),
         Command::Bench(arguments) => bench::run(arguments, flags),
         Command::Doctor => doctor::run(flags),

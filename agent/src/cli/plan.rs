@@ -3,7 +3,7 @@
 
 use super::exit::Failure;
 use super::flags::Flags;
-use super::{output, setup};
+use super::{output, setup, stores};
 use crate::conversation::{Rehearsal, plan_table, rehearse};
 use crate::history::Session;
 use clap::Args;
@@ -22,9 +22,8 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     let what = arguments.what.as_deref().unwrap_or("last");
-    // Words are only rehearsed: what makes no version makes no store either.
-    let (store, _scratch) = if arguments.prompt.is_empty() { (setup::store(flags)?, None) } else { setup::store_or_none(flags)? };
-    let session = if setup::is_file(what) { None } else { Some(Session::open(&store, flags.session.as_deref())?) };
+    // What makes no version makes no store either.
+    let session = if setup::is_file(what) { None } else { Some(stores::session(flags)?.1) };
     let (spec, parent) = match &session {
         Some(session) => {
             let version = session.find(what)?;
@@ -34,7 +33,7 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
         None => (setup::spec_of(what, flags)?, None),
     };
     let options = RunOptions { camera: session.as_ref().and_then(Session::camera), ..flags.run_options() };
-    let mut engine = setup::engine(flags, store);
+    let mut engine = setup::engine(flags, stores::of_results(flags)?);
     let (mut now, mut before) = (spec.clone(), parent.clone());
     let mut turns = Vec::new();
     for words in &arguments.prompt {

@@ -42,14 +42,13 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
             format!("the REPL needs a terminal; without one: phystalk exec {} -p \"…\"", scene.unwrap_or("SCENE")),
         ));
     }
-    let conversation = setup::converse(scene, flags, |_| flags.out.clone())?;
-    let store = setup::store(flags)?;
+    let conversation = setup::converse(scene, flags, "repl", |_| flags.out.clone())?;
     let graphics = arguments.graphics.or_else(graphics_from_environment).unwrap_or_default();
     // The scene of a new session already has the `--set` edits; an old one gets them as a turn.
     let set = (conversation.resumed && !flags.set.is_empty()).then(|| format!("/set {}", flags.set.join(" ")));
     let lines = set.into_iter().chain(arguments.prompt.clone()).collect();
     let window = super::view::opener(flags, conversation.session().name());
-    tui::run(conversation, &store, tui::Options { graphics, lines, window })
+    tui::run(conversation, tui::Options { graphics, lines, window })
 }
 
 /// A word that is no file and looks like no path.

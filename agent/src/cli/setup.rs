@@ -1,45 +1,15 @@
-//! From flags to a store, a spec, a session, a conversation.
+//! From flags to a spec, a session, a conversation.
 
 use super::exit::{Failure, Kind};
 use super::flags::Flags;
-use super::output;
+use super::{output, stores};
 use crate::conversation::Conversation;
-use crate::history::Session;
+use crate::conversation::output_folder::{self, OutputFolder, Owner};
+use crate::history::{Session, Sessions};
 use phystalk::spec::{Edit, Spec};
 use phystalk::stages::Engine;
 use phystalk::store::Store;
 use std::path::{Path, PathBuf};
-
-/// The store that the flags name, made where there is none.
-pub fn store(flags: &Flags) -> Result<Store, Failure> {
-    let here = std::env::current_dir().map_err(|e| Failure::file("use", Path::new("."), &e))?;
-    Ok(Store::open(flags.store.as_deref(), &here)?)
-}
-
-/// The store that the flags name where there is one, else one that is gone when its guard is: for what leaves nothing behind.
-pub fn store_or_none(flags: &Flags) -> Result<(Store, Option<Scratch>), Failure> {
-    let here = std::env::current_dir().map_err(|e| Failure::file("use", Path::new("."), &e))?;
-    let known = |dir: PathBuf| dir.join("format").exists();
-    let there = match &flags.store {
-        Some(dir) => known(here.join(dir)),
-        None => here.ancestors().any(|folder| known(folder.join(".phystalk"))),
-    };
-    if there {
-        return Ok((store(flags)?, None));
-    }
-    let dir = std::env::temp_dir().join(format!("phystalk-{}", std::process::id()));
-    let scratch = Scratch(dir.clone());
-    Ok((Store::open(Some(&dir), &here)?, Some(scratch)))
-}
-
-/// A folder that goes when this does.
-pub struct Scratch(PathBuf);
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 
 /// The engine of this process.
 pub fn engine(flags: &Flags, store: Store) -> Engine {
@@ -97,37 +67,51 @@ fn digest(path: &Path) -> Option<String> {
     Some(hasher.finalize().to_hex().to_string())
 }
 
-/// The last session, or the one that `--session` names.
-pub fn session(flags: &Flags, store: &Store) -> Result<Session, Failure> {
-    Ok(Session::open(store, flags.session.as_deref())?)
+/// A conversation about a scene: goes on with a session where the flags say so, else starts one
+/// whose scene was read first, so that a wrong path leaves nothing behind. `command` is who writes to the output folder.
+pub fn converse(scene: Option<&str>, flags: &Flags, command: &str, out: impl Fn(&str) -> Option<PathBuf>) -> Result<Conversation, Failure> {
+    stores::with_work(flags, |store| converse_in(store, scene, flags, command, out))
 }
 
-/// A conversation about a scene: goes on with a session where the flags say so, else starts one
-/// whose scene was read first, so that a wrong path leaves nothing behind.
-pub fn converse(scene: Option<&str>, flags: &Flags, out: impl Fn(&str) -> Option<PathBuf>) -> Result<Conversation, Failure> {
-    let store = store(flags)?;
-    let known = flags.session.as_ref().is_some_and(|name| Session::exists(&store, name).is_ok_and(|known| known));
+fn converse_in(
+    store: &Store,
+    scene: Option<&str>,
+    flags: &Flags,
+    command: &str,
+    out: impl Fn(&str) -> Option<PathBuf>,
+) -> Result<Conversation, Failure> {
+    let sessions = stores::sessions(flags, store)?;
+    let known = flags.session.as_ref().is_some_and(|name| sessions.has(name).is_ok_and(|known| known));
     let mut engine = engine(flags, store.clone());
     engine.open_ahead();
     let resumed = flags.resume || known;
     let session = match scene {
-        _ if resumed => old_session(scene, flags, &store)?,
+        _ if resumed => old_session(scene, flags, &sessions)?,
         Some(scene) => {
+            if let Some(out) = &flags.out {
+                output_folder::check(out, None, command, flags.replace)?;
+            }
             let spec = spec_of(scene, flags)?;
             engine.facts(&spec, Path::new(""), &flags.run_options())?;
-            Session::start(&store, flags.session.as_deref(), spec)?
+            sessions.start(flags.session.as_deref(), spec)?
         }
         None => return Err(Failure::new(Kind::Usage, "no scene: give a splat file (.ply or .splat), a spec (.toml), or --continue")),
     };
-    let out = out(session.name());
-    let mut conversation = Conversation::new(engine, session, flags.run_options(), out, flags.cpu);
+    let folder = out(session.name()).map(|dir| output(dir, store, &session, flags, command)).transpose()?;
+    let mut conversation = Conversation::new(engine, session, flags.run_options(), folder, flags.cpu);
     (conversation.details, conversation.resumed) = (flags.verbose, resumed);
     Ok(conversation)
 }
 
+/// The output folder of a session, refused where it holds files of another one.
+pub fn output(dir: PathBuf, store: &Store, session: &Session, flags: &Flags, command: &str) -> Result<OutputFolder, Failure> {
+    let owner = Owner { store: store.id().unwrap_or_default().to_owned(), session: session.name().to_owned(), command: command.to_owned() };
+    OutputFolder::open(dir, owner, flags.replace)
+}
+
 /// An old session, which must be about the scene that was named, if one was.
-fn old_session(scene: Option<&str>, flags: &Flags, store: &Store) -> Result<Session, Failure> {
-    let session = session(flags, store)?;
+fn old_session(scene: Option<&str>, flags: &Flags, sessions: &Sessions) -> Result<Session, Failure> {
+    let session = sessions.open(flags.session.as_deref())?;
     let asked = scene.map(|s| spec_of(s, &Flags::default())).transpose()?;
     let same = |asked: &Spec| {
         asked.scene.blake3 == session.base().scene.blake3 && (asked.scene.blake3.is_some() || asked.scene.file == session.base().scene.file)
@@ -161,8 +145,7 @@ pub fn spec_by_name(name: &str, flags: &Flags) -> Result<(Spec, String), Failure
     if is_file(name) {
         return Ok((spec_of(name, flags)?, name.to_owned()));
     }
-    let store = store(flags)?;
-    let session = session(flags, &store)?;
+    let (_, session) = stores::session(flags)?;
     let version = session.find(name)?.name.clone();
     Ok((adjusted(session.spec_of(&version)?, flags)?, version))
 }

@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use super::flags::Flags;
-use super::{output, setup};
+use super::{output, stores};
 use clap::Args;
 use serde_json::json;
 
@@ -13,8 +13,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
-    let store = setup::store(flags)?;
-    let session = setup::session(flags, &store)?;
+    let (_, session) = stores::session(flags)?;
     let version = session.find(arguments.version.as_deref().unwrap_or("last"))?;
     let spec = session.spec_of(&version.name)?;
     if flags.json {

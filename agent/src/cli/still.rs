@@ -9,6 +9,7 @@ use glam::{Mat4, Vec3};
 use phystalk::export;
 use phystalk::render::{Image, Profile, RenderOptions, View};
 use phystalk::scene::{self, Loaded, SceneFrame};
+use phystalk::store::Store;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -82,7 +83,7 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     loaded.warnings.iter().filter(|_| !flags.quiet).for_each(|w| output::note(format!("warning: {w}")));
     let exr = kind == Kinds::Exr;
     let options = RenderOptions { profile: arguments.profile.into(), near: arguments.near, colour: exr, depth: exr, ..RenderOptions::default() };
-    let mut engine = setup::engine(flags, setup::store(flags)?);
+    let mut engine = setup::engine(flags, Store::scratch()?);
     let images = engine.still(&loaded.gaussians, &views.list, &options)?;
     for (image, path) in images.iter().zip(&outputs) {
         write(image, path, kind)?;

@@ -3,7 +3,7 @@
 use super::exit::Failure;
 use super::flags::Flags;
 use super::text::Teller;
-use super::{output, setup, signals};
+use super::{output, setup, signals, stores};
 use crate::conversation::Conversation;
 use clap::Args;
 use phystalk::Stop;
@@ -26,10 +26,10 @@ pub enum Way {
 }
 
 pub fn run(arguments: &Arguments, way: Way, flags: &Flags) -> Result<(), Failure> {
-    let store = setup::store(flags)?;
-    let mut session = setup::session(flags, &store)?;
+    let (store, mut session) = stores::session(flags)?;
     if let Some(out) = &flags.out {
-        let mut conversation = Conversation::new(setup::engine(flags, store), session, flags.run_options(), Some(out.clone()), flags.cpu);
+        let folder = setup::output(out.clone(), &store, &session, flags, "exec")?;
+        let mut conversation = Conversation::new(setup::engine(flags, store), session, flags.run_options(), Some(folder), flags.cpu);
         let stop = Stop::default();
         let _guard = signals::stop_on_signal(&stop);
         let mut teller = Teller::new(flags.quiet || flags.json, &stop);

@@ -2,7 +2,7 @@
 
 use super::exit::{Failure, Kind};
 use super::flags::Flags;
-use super::setup;
+use super::{setup, stores};
 use clap::Args;
 use std::process::{Child, Command, Stdio};
 
@@ -26,16 +26,20 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
 #[cfg(feature = "window")]
 fn open(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     use crate::preview::window::{self, Setting, Source};
-    let store = setup::store(flags)?;
     let chosen = match arguments.what.as_deref().filter(|w| !setup::is_spec(w)) {
-        Some(version) => Some(setup::session(flags, &store)?.find(version)?.name.clone()),
+        Some(version) => Some(stores::session(flags)?.1.find(version)?.name.clone()),
         None => None,
     };
     let source = match arguments.what.as_deref().filter(|w| setup::is_spec(w)) {
         Some(file) => Source::Spec(Box::new(setup::spec_of(file, flags)?)),
         None => Source::Session(flags.session.clone()),
     };
-    window::open(Setting { store, device: flags.device_request(), options: flags.run_options(), source }, chosen)
+    let store = match source {
+        Source::Session(_) => stores::session(flags)?.0,
+        Source::Spec(_) => stores::of_results(flags)?,
+    };
+    let sessions = stores::sessions(flags, &store)?;
+    window::open(Setting { store, sessions, device: flags.device_request(), options: flags.run_options(), source }, chosen)
 }
 
 #[cfg(not(feature = "window"))]

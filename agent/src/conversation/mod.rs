@@ -3,15 +3,17 @@
 mod event;
 mod files;
 mod kept;
+mod merging;
 mod narrate;
 mod observer;
+pub mod output_folder;
 mod rehearse;
 mod turn;
 
 pub use event::{Event, Line, Lines};
-pub use narrate::{duration, plan_line, plan_table};
+pub use narrate::{damage, duration, plan_line, plan_table};
 pub use rehearse::{Rehearsal, rehearse};
-pub use turn::Conversation;
+pub use turn::{Conversation, Outcome};
 
 use phystalk::Frame;
 

@@ -1,5 +1,6 @@
 //! What happened, in words: plans, durations, what a run showed.
 
+use crate::history::Session;
 use crate::language::say;
 use phystalk::spec::{Spec, Until};
 use phystalk::stages::{Action, Metrics, ObjectMetrics, PlannedStage};
@@ -8,6 +9,15 @@ use phystalk::world::Facts;
 /// What moves slower than so many of its heights a second, or than this share of its fastest, only trembles.
 const STILL_HEIGHTS_S: f64 = 0.1;
 const STILL_SHARE: f64 = 0.1;
+
+/// What is wrong with a session's log, and what to do about it.
+pub fn damage(session: &Session) -> Option<String> {
+    let damage = session.damage();
+    (!damage.is_empty()).then(|| {
+        let name = session.name();
+        format!("session {name} is damaged ({}): the versions in those lines are missing, all others are there; phystalk store verify --repair mends the log", damage.join("; "))
+    })
+}
 
 /// Seconds as people say them.
 pub fn duration(seconds: f64) -> String {

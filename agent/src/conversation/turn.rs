@@ -1,25 +1,27 @@
 //! One turn: understand, apply, keep, plan, run, measure. Nothing else changes a spec.
 
 use super::files::Files;
+use super::merging::Change;
 use super::observer::Observer;
+use super::output_folder::OutputFolder;
 use super::{Event, Listener, kept, narrate, rehearse};
 use crate::cli::exit::{Failure, Kind};
-use crate::history::{Session, Version};
+use crate::history::{Author, HistoryError, Session, Version};
 use crate::language::{Reply, VersionRef};
 use phystalk::Stop;
 use phystalk::gpu::Tier;
 use phystalk::spec::{Auto, Camera, Edit, Spec};
 use phystalk::stages::{Engine, Metrics, Plan, Report, RunOptions};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A session that is talked to.
 pub struct Conversation {
-    engine: Engine,
-    session: Session,
-    options: RunOptions,
+    pub(super) engine: Engine,
+    pub(super) session: Session,
+    pub(super) options: RunOptions,
     /// Where files go; none where pictures are only looked at.
-    out: Option<PathBuf>,
+    out: Option<OutputFolder>,
     turns: u32,
     asked_for_cpu: bool,
     said_device: bool,
@@ -41,7 +43,7 @@ pub struct Outcome {
 
 impl Conversation {
     /// Goes on with a session.
-    pub fn new(engine: Engine, session: Session, options: RunOptions, out: Option<PathBuf>, asked_for_cpu: bool) -> Conversation {
+    pub fn new(engine: Engine, session: Session, options: RunOptions, out: Option<OutputFolder>, asked_for_cpu: bool) -> Conversation {
         let options = RunOptions { camera: session.camera(), ..options };
         Conversation {
             engine,
@@ -62,6 +64,11 @@ impl Conversation {
         &self.session
     }
 
+    /// The store that it works on.
+    pub fn store(&self) -> &phystalk::store::Store {
+        self.engine.store()
+    }
+
     /// Announces the session.
     pub fn open(&self, listener: &mut dyn Listener) {
         listener.event(Event::SessionStarted {
@@ -69,6 +76,7 @@ impl Conversation {
             store: self.engine.store().dir().to_owned(),
             scene: self.session.spec().scene.file.clone(),
         });
+        narrate::damage(&self.session).into_iter().for_each(|text| listener.event(Event::Warning { text }));
         if self.session.dropped_torn_line() {
             listener.event(Event::Warning { text: "an operation that was not finished when the program last ended was dropped".to_owned() });
         }
@@ -84,43 +92,62 @@ impl Conversation {
     /// A turn of edits that were given as edits.
     pub fn edit(&mut self, words: &str, edits: Vec<Edit>, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
         self.begin(words, listener);
-        let result = self.accept(words, edits, listener, stop);
+        let result = self.accept(words, Author::Literal, edits, listener, stop);
         end(result, listener)
     }
 
     /// A turn that goes back by some versions.
     pub fn undo(&mut self, steps: u32, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
-        self.travel("undo", listener, stop, |session, words| Ok(session.undo(words, steps)?))
+        self.begin("undo", listener);
+        let result = self.travel("undo", listener, stop, |session, words| session.undo(words, steps));
+        end(result, listener)
     }
 
     /// A turn that goes forward again.
     pub fn redo(&mut self, steps: u32, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
-        self.travel("redo", listener, stop, |session, words| Ok(session.redo(words, steps)?))
+        self.begin("redo", listener);
+        let result = self.travel("redo", listener, stop, |session, words| session.redo(words, steps));
+        end(result, listener)
     }
 
+    /// Goes to an older version, or forward again.
     fn travel(
         &mut self,
         words: &str,
         listener: &mut dyn Listener,
         stop: &Stop,
-        go: impl Fn(&mut Session, &str) -> Result<Version, Failure>,
-    ) -> Outcome {
-        self.begin(words, listener);
+        go: impl FnOnce(&mut Session, &str) -> Result<Version, HistoryError>,
+    ) -> Result<Ended, Failure> {
+        self.able()?;
         let before = self.session.spec().clone();
         let from = self.head_name();
-        let result = self.able().and_then(|()| go(&mut self.session, words)).and_then(|version| self.made(version, from, &before, listener, stop));
-        end(result, listener)
+        match go(&mut self.session, words) {
+            Ok(version) => self.made(version, from, &before, listener, stop),
+            Err(error) => {
+                // Told of the version that another process added, the user may say it again and mean that one.
+                self.session.go_on()?;
+                Err(error.into())
+            }
+        }
     }
 
     /// Makes a version of the spec as it is, without an edit, and runs it.
     pub fn run_base(&mut self, words: &str, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
         self.begin(words, listener);
         let spec = self.session.spec().clone();
-        let made = self.able().and_then(|()| Ok(self.session.commit(words, &[], &spec)?));
+        let made = self.able().and_then(|()| Ok(self.session.commit(words, Author::Literal, &[], &spec)?));
         let result = made.and_then(|version| {
             listener.event(Event::SpecEdited { from: None, to: version.name.clone(), edits: Vec::new(), changes: Vec::new() });
             self.run(&version, None, listener, stop)
         });
+        end(result, listener)
+    }
+
+    /// Writes the files of a version that is there already: no turn, no new version.
+    pub fn run_again(&mut self, version: &str, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
+        self.begin(&format!("run {version}"), listener);
+        let found = self.able().and_then(|()| Ok(self.session.find(version)?.clone()));
+        let result = found.and_then(|version| self.run(&version, None, listener, stop));
         end(result, listener)
     }
 
@@ -170,45 +197,25 @@ impl Conversation {
         listener.event(Event::TurnStarted { turn: self.turns, text: words.to_owned() });
     }
 
-    /// The spec that the newest version was made from: the scene as found before the first.
-    fn before_head(&self) -> Option<Spec> {
-        match self.session.head()?.parent.as_deref() {
-            Some(parent) => Some(self.session.find(parent).ok()?.spec.clone()),
-            None => Some(self.session.base().clone()),
-        }
-    }
-
     fn head_name(&self) -> Option<String> {
         self.session.head().map(|v| v.name.clone())
     }
 
     fn understand_and_run(&mut self, words: &str, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
         let spec = self.session.spec().clone();
-        let previous = self.before_head();
+        // The spec that the newest version was made from.
+        let previous = self.session.head().and_then(|head| self.session.spec_before(head)).cloned();
         let reply = rehearse::hear(&mut self.engine, &self.options, &spec, previous.as_ref(), words)?;
         listener.event(Event::Usage { provider: "phrasebook".to_owned(), input_tokens: 0, output_tokens: 0 });
-        let from = self.head_name();
         match reply {
             Reply::Edits { edits, gloss, not_understood } => {
                 gloss.into_iter().for_each(|text| listener.event(Event::Message { text }));
                 say_not_understood(not_understood, listener);
-                self.accept(words, edits, listener, stop).map_err(as_refusal)
+                self.accept(words, Author::Phrasebook, edits, listener, stop).map_err(as_refusal)
             }
-            Reply::Undo(steps) => {
-                self.able()?;
-                let version = self.session.undo(words, steps)?;
-                self.made(version, from, &spec, listener, stop)
-            }
-            Reply::Redo(steps) => {
-                self.able()?;
-                let version = self.session.redo(words, steps)?;
-                self.made(version, from, &spec, listener, stop)
-            }
-            Reply::BackTo(reference) => {
-                self.able()?;
-                let version = self.session.back_to(words, &version_name(reference))?;
-                self.made(version, from, &spec, listener, stop)
-            }
+            Reply::Undo(steps) => self.travel(words, listener, stop, |session, words| session.undo(words, steps)),
+            Reply::Redo(steps) => self.travel(words, listener, stop, |session, words| session.redo(words, steps)),
+            Reply::BackTo(reference) => self.travel(words, listener, stop, |session, words| session.back_to(words, &version_name(reference))),
             Reply::Compare(from, to) => self.compare(from, to, listener),
             Reply::Refused { reason, not_understood } => {
                 say_not_understood(not_understood, listener);
@@ -219,7 +226,7 @@ impl Conversation {
 
     /// Applies edits, keeps the version, runs it. Edits that change nothing make no version, but the
     /// first turn of a session shows the scene as it is.
-    fn accept(&mut self, words: &str, edits: Vec<Edit>, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
+    fn accept(&mut self, words: &str, author: Author, edits: Vec<Edit>, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
         let before = self.session.spec().clone();
         let mut notes = Vec::new();
         let after = before.apply_noted(&edits, &mut notes)?;
@@ -233,7 +240,9 @@ impl Conversation {
         let longer = rehearse::longer(&mut self.engine, &self.options, &before, &after);
         let said = kept::said(&before, &after, &edits).into_iter().chain(longer);
         said.for_each(|text| listener.event(Event::Message { text }));
-        let version = self.session.commit(words, &edits, &after)?;
+        let version = self.commit(&Change { words, author, edits: &edits, after: &after }, listener)?;
+        let before = self.session.spec_before(&version).cloned().unwrap_or(before);
+        let from = version.parent.clone();
         self.made(version, from, &before, listener, stop)
     }
 
@@ -256,8 +265,7 @@ impl Conversation {
     fn able(&mut self) -> Result<(), Failure> {
         self.engine.device()?;
         match &self.out {
-            Some(out) => std::fs::create_dir_all(out)
-                .map_err(|e| Failure::other(format!("{} cannot be written to: {e}\nname another folder with --out", out.display()))),
+            Some(out) => out.claim(),
             None => Ok(()),
         }
     }
@@ -275,20 +283,12 @@ impl Conversation {
     }
 
     fn run(&mut self, version: &Version, previous: Option<&Spec>, listener: &mut dyn Listener, stop: &Stop) -> Result<Ended, Failure> {
-        let spec = self.session.spec().clone();
+        let spec = version.spec.clone();
         let plan = self.engine.plan(&spec, Path::new(""), &self.options, previous)?;
         self.say_device(listener)?;
         listener.event(Event::PlanReady { stages: plan.stages.clone() });
         let mut files = match &self.out {
-            Some(out) => {
-                let folder = out.join(&version.name);
-                // As a compiler does, files of an earlier run are replaced; those of another simulation are worth a word.
-                if Spec::read(&folder.join("spec.toml")).is_ok_and(|held| held.hash() != spec.hash()) {
-                    let text = format!("{} held another simulation: its files are replaced; --out names another folder", folder.display());
-                    listener.event(Event::Warning { text });
-                }
-                Some(Files::create(&folder, spec.time.fps)?)
-            }
+            Some(out) => Some(Files::create(&out.version(&version.name), spec.time.fps)?),
             None => None,
         };
         if let Some(files) = &files {
@@ -323,7 +323,8 @@ impl Conversation {
             return Ok(Ended::Cancelled(version.name.clone()));
         }
         // Kept of a version that ran to its end: that is how the others are told.
-        self.session.keep_resolved(&version.name, serde_json::Value::Object(report.metrics.resolved.clone()))?;
+        let results = report.results.iter().map(|(stage, key)| format!("{stage}/{key}")).collect();
+        self.session.keep_resolved(&version.name, serde_json::Value::Object(report.metrics.resolved.clone()), results)?;
         let details = if self.details { narrate::details(&report.metrics) } else { Vec::new() };
         narrate::outcome(&report.metrics, &spec).into_iter().chain(details).for_each(|text| listener.event(Event::Message { text }));
         judge(&report.metrics, &version.name)

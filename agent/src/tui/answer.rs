@@ -2,12 +2,11 @@
 
 use super::app::Question;
 use crate::cli::exit::Failure;
-use crate::history::Session;
-use phystalk::store::Store;
+use crate::history::{Session, Sessions};
 
 /// The answer as text.
-pub fn answer(question: &Question, store: &Store, session: &str) -> Result<String, Failure> {
-    let session = Session::open(store, Some(session))?;
+pub fn answer(question: &Question, sessions: &Sessions, session: &str) -> Result<String, Failure> {
+    let session = sessions.open(Some(session))?;
     match question {
         Question::Log => Ok(crate::cli::log::text(&session)),
         Question::Spec(None) => Ok(session.spec().to_toml().trim_end().to_owned()),

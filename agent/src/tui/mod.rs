@@ -15,13 +15,13 @@ mod worker;
 
 use crate::cli::exit::Failure;
 use crate::conversation::Conversation;
+use crate::history::Sessions;
 use crate::preview::Reel;
 use crate::preview::terminal::Graphics;
 use app::{App, Effect, Update};
 use crossterm::event::Event as Input;
 use pane::Pane;
 use phystalk::Stop;
-use phystalk::store::Store;
 use std::process::Child;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -55,8 +55,10 @@ pub struct Options {
 }
 
 /// Runs the REPL until the user leaves.
-pub fn run(conversation: Conversation, store: &Store, options: Options) -> Result<(), Failure> {
+pub fn run(conversation: Conversation, options: Options) -> Result<(), Failure> {
     let session = conversation.session().name().to_owned();
+    let sessions = conversation.session().sessions().clone();
+    let store = conversation.store().clone();
     let scene = conversation.session().spec().scene.file.clone();
     let mut screen = Screen::take(&worker::log_file(store.dir()))?;
     let painter = options.graphics.settle();
@@ -75,7 +77,7 @@ pub fn run(conversation: Conversation, store: &Store, options: Options) -> Resul
         std::thread::Builder::new().name("engine".into()).spawn(serve)?
     };
     read_keys(post)?;
-    let mut desk = Desk { ask, brake, store: store.clone(), session, window: Window { open: options.window, child: None } };
+    let mut desk = Desk { ask, brake, sessions, session, window: Window { open: options.window, child: None } };
     let mut first = app.open();
     first.extend(options.lines.into_iter().flat_map(|line| app.enter(line, Instant::now())));
     let result = attend(&mut app, &mut screen, &inbox, &mut desk, first);
@@ -108,7 +110,7 @@ fn read_keys(post: Sender<Message>) -> Result<(), Failure> {
 struct Desk {
     ask: Sender<app::Request>,
     brake: worker::Brake,
-    store: Store,
+    sessions: Sessions,
     session: String,
     window: Window,
 }
@@ -202,7 +204,7 @@ fn act(app: &mut App, screen: &mut Screen, desk: &mut Desk, effects: Vec<Effect>
                 // The engine's thread ends only with the program.
                 let _ = desk.ask.send(request);
             }
-            Effect::Ask(question) => match answer::answer(&question, &desk.store, &desk.session) {
+            Effect::Ask(question) => match answer::answer(&question, &desk.sessions, &desk.session) {
                 Ok(text) => app.transcript.add(Voice::Detail, text),
                 Err(failure) => app.transcript.add(Voice::Error, failure.message),
             },

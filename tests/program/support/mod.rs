@@ -42,6 +42,8 @@ impl Desk {
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_phystalk"));
         command.args(arguments).current_dir(self.0.path()).env_remove("XDG_RUNTIME_DIR");
+        // The tests leave no trace in the user's list of stores.
+        command.env("XDG_STATE_HOME", self.path("state"));
         command
     }
 
@@ -59,8 +61,8 @@ impl Desk {
 }
 
 /// Small and short: what most runs of these tests take.
-pub const SMALL: [&str; 10] =
-    ["--set", "solver.cells_across=8", "--set", "time.duration_s=0.1", "--set", "scene.up=\"+z\"", "--size", "64x48", "--out", "out"];
+pub const SMALL: [&str; 11] =
+    ["--set", "solver.cells_across=8", "--set", "time.duration_s=0.1", "--set", "scene.up=\"+z\"", "--size", "64x48", "--out", "out", "--replace"];
 
 /// A command line with [`SMALL`] behind it.
 pub fn small<'a>(arguments: &[&'a str]) -> Vec<&'a str> {

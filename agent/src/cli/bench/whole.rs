@@ -58,7 +58,7 @@ impl Scratch {
     }
 
     fn engine(&self, flags: &Flags) -> Result<Engine, Failure> {
-        Ok(Engine::new(Store::open(Some(&self.0.join("store")), &self.0)?, flags.device_request()))
+        Ok(Engine::new(Store::open(&self.0.join("store"))?, flags.device_request()))
     }
 }
 

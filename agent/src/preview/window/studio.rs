@@ -2,7 +2,7 @@
 //! asked for last.
 
 use crate::cli::exit::Failure;
-use crate::history::{Session, Version};
+use crate::history::{Session, Sessions, Version};
 use phystalk::gpu::DeviceRequest;
 use phystalk::spec::{Camera, Spec};
 use phystalk::stages::{Engine, Player, RunOptions};
@@ -33,6 +33,8 @@ pub enum Source {
 pub struct Setting {
     /// Where results are.
     pub store: Store,
+    /// The sessions of the store.
+    pub sessions: Sessions,
     /// On what.
     pub device: DeviceRequest,
     /// How fine: must be as the versions were run, since other motion has other keys.
@@ -196,7 +198,7 @@ impl Studio {
             }
             Source::Session(name) => name.clone(),
         };
-        match Session::open(&self.setting.store, name.as_deref()) {
+        match self.setting.sessions.open(name.as_deref()) {
             Ok(session) => {
                 let list = listing(&session);
                 if self.session.as_ref().is_none_or(|s| s.name() != session.name()) || self.told != list {

@@ -9,21 +9,38 @@ use serde_json::json;
 
 use super::*;
 
+mod damage;
+mod writers;
+
 fn store() -> (tempfile::TempDir, Store) {
     let home = tempfile::tempdir().unwrap();
-    let store = Store::open(None, home.path()).unwrap();
+    let store = Store::open(&home.path().join(".phystalk")).unwrap();
     (home, store)
 }
 
+/// The sessions of a store, from the folder that it lies in.
+fn sessions(store: &Store) -> Sessions {
+    Sessions::seen_from(store, store.dir().parent().unwrap())
+}
+
 fn session(store: &Store) -> Session {
-    Session::start(store, None, Spec::of_scene("builtin:demo")).unwrap()
+    sessions(store).start(None, Spec::of_scene("builtin:demo")).unwrap()
+}
+
+fn open(store: &Store, name: Option<&str>) -> Result<Session, HistoryError> {
+    sessions(store).open(name)
 }
 
 /// A turn that sets the seed.
 fn turn(session: &mut Session, seed: u32) -> Version {
     let edits = [Edit::set("seed", seed)];
     let spec = session.spec().apply(&edits).unwrap();
-    session.commit(&format!("seed {seed}"), &edits, &spec).unwrap()
+    session.commit(&format!("seed {seed}"), Author::Literal, &edits, &spec).unwrap()
+}
+
+/// All sessions, in the order of use.
+fn names(store: &Store) -> Vec<String> {
+    sessions(store).used().unwrap().into_iter().map(|(name, _)| name).collect()
 }
 
 fn seeds(session: &Session) -> Vec<u64> {
@@ -40,9 +57,9 @@ fn turns_make_versions_that_are_there_after_opening_again() {
     assert_eq!(first.spec_hash, session.spec().hash());
     let second = turn(&mut session, 3);
     assert_eq!((second.name.as_str(), second.parent.as_deref()), ("v2", Some("v1")));
-    session.keep_resolved("v2", json!({ "time.duration_s": 2.0 })).unwrap();
+    session.keep_resolved("v2", json!({ "time.duration_s": 2.0 }), vec!["motion/k".to_owned()]).unwrap();
 
-    let again = Session::open(&store, None).unwrap();
+    let again = open(&store, None).unwrap();
     assert_eq!(again.versions(), session.versions());
     assert_eq!(again.find("2").unwrap().resolved, Some(json!({ "time.duration_s": 2.0 })));
     assert_eq!(again.spec(), session.spec());
@@ -77,7 +94,7 @@ fn undo_makes_versions_and_walks_further_back() {
     assert!(matches!(session.undo("undo", 1), Err(HistoryError::NothingToUndo { .. })));
     assert_eq!(seeds(&session), [2, 3, 4, 3, 2, 3, 4, 2, 1]);
     // The walk is the same for a process that comes later.
-    let mut later = Session::open(&store, Some("s1")).unwrap();
+    let mut later = open(&store, Some("s1")).unwrap();
     assert_eq!(later.redo("redo", 1).unwrap().note, "forward to v1");
     turn(&mut later, 9);
     assert!(matches!(later.redo("redo", 1), Err(HistoryError::NothingToRedo { .. })));
@@ -104,7 +121,7 @@ fn a_spec_that_was_taken_over_has_nothing_before_it() {
     let (_home, store) = store();
     let mut session = session(&store);
     let base = session.base().clone();
-    session.commit("run a.toml", &[], &base).unwrap();
+    session.commit("run a.toml", Author::Literal, &[], &base).unwrap();
     assert!(matches!(session.undo("undo", 1), Err(HistoryError::NothingToUndo { .. })));
     turn(&mut session, 5);
     assert_eq!(session.undo("undo", 5).unwrap().note, "back to v1, all that there is: 1 of 5 steps");
@@ -113,58 +130,35 @@ fn a_spec_that_was_taken_over_has_nothing_before_it() {
 #[test]
 fn sessions_are_found_in_the_order_of_use() {
     let (_home, store) = store();
-    assert!(matches!(Session::open(&store, None), Err(HistoryError::NoSuchSession { .. })));
+    assert!(matches!(open(&store, None), Err(HistoryError::NoSuchSession { .. })));
     let mut first = session(&store);
     turn(&mut first, 1);
     turn(&mut session(&store), 1);
-    let mut named = Session::start(&store, Some("vases"), Spec::of_scene("builtin:demo")).unwrap();
-    assert_eq!(Session::open(&store, None).unwrap().name(), "s2", "nothing was said in the newest one");
-    assert!(Session::exists(&store, "vases").unwrap() && !Session::exists(&store, "s9").unwrap());
+    let mut named = sessions(&store).start(Some("vases"), Spec::of_scene("builtin:demo")).unwrap();
+    assert_eq!(open(&store, None).unwrap().name(), "s2", "nothing was said in the newest one");
+    assert!(sessions(&store).has("vases").unwrap() && !sessions(&store).has("s9").unwrap());
     turn(&mut named, 1);
-    assert_eq!(Session::list(&store).unwrap(), ["s1", "s2", "vases"]);
-    assert_eq!(Session::open(&store, None).unwrap().name(), named.name());
+    assert_eq!(names(&store), ["s1", "s2", "vases"]);
+    assert_eq!(open(&store, None).unwrap().name(), named.name());
     turn(&mut first, 2);
-    assert_eq!(Session::list(&store).unwrap(), ["s2", "vases", "s1"]);
+    assert_eq!(names(&store), ["s2", "vases", "s1"]);
     assert_eq!(session(&store).name(), "s4");
-    let start = |name| Session::start(&store, Some(name), Spec::of_scene("builtin:demo"));
+    let start = |name| sessions(&store).start(Some(name), Spec::of_scene("builtin:demo"));
     assert!(matches!(start("vases"), Err(HistoryError::SessionExists { .. })));
     assert!(matches!(start("../vases"), Err(HistoryError::BadName { .. })));
-    assert!(matches!(Session::open(&store, Some("../vases")), Err(HistoryError::NoSuchSession { .. })));
-}
-
-#[test]
-fn two_processes_lose_nothing_of_each_other() {
-    let (_home, store) = store();
-    let mut ours = session(&store);
-    turn(&mut ours, 2);
-    let mut theirs = Session::open(&store, None).unwrap();
-    turn(&mut theirs, 3);
-    // Ours was made on v1, which is said.
-    let version = turn(&mut ours, 4);
-    assert_eq!((version.name.as_str(), version.parent.as_deref()), ("v3", Some("v1")));
-    assert_eq!(seeds(&ours), [2, 3, 4]);
-    assert_eq!(theirs.undo("undo", 1).unwrap().note, "back to v1");
-    let writers: Vec<_> = (0..4)
-        .map(|writer| {
-            let mut session = Session::open(&store, None).unwrap();
-            std::thread::spawn(move || (0..5).for_each(|seed| drop(turn(&mut session, 100 + writer * 10 + seed))))
-        })
-        .collect();
-    writers.into_iter().for_each(|writer| writer.join().unwrap());
-    let names: Vec<String> = Session::open(&store, None).unwrap().versions().iter().map(|version| version.name.clone()).collect();
-    assert_eq!(names, (1..=24).map(|number| format!("v{number}")).collect::<Vec<_>>());
+    assert!(matches!(open(&store, Some("../vases")), Err(HistoryError::NoSuchSession { .. })));
 }
 
 #[test]
 fn the_scene_is_found_from_anywhere_and_the_camera_is_kept() {
     let (home, store) = store();
     let base = Spec::of_scene("vase.splat").absolute_from(home.path()).unwrap();
-    let mut session = Session::start(&store, None, base).unwrap();
+    let mut session = sessions(&store).start(None, base).unwrap();
     assert!(std::path::Path::new(&session.base().scene.file).is_absolute());
     assert_eq!(session.camera(), None);
     let camera = phystalk::spec::Camera { eye_m: [1.0, 2.0, 0.1 + 0.2], target_m: [0.0; 3], fov_deg: 45.0, orbit_deg_s: 0.0 };
     session.keep_camera(&camera).unwrap();
-    assert_eq!(Session::open(&store, Some("s1")).unwrap().camera(), Some(camera));
+    assert_eq!(open(&store, Some("s1")).unwrap().camera(), Some(camera));
 }
 
 #[test]
@@ -178,10 +172,12 @@ fn a_crash_after_any_byte_leaves_a_history_that_reads() {
     let whole = fs::read(&path).unwrap();
     let ends: Vec<usize> = whole.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1).collect();
     assert_eq!(ends.len(), 4);
+    // What a crash leaves is a head of the line before, or none.
+    fs::remove_file(store.dir().join("history/session-s1.head")).unwrap();
     for cut in (0..whole.len()).step_by(37).chain(ends.iter().flat_map(|end| [end - 1, *end])) {
         fs::write(&path, &whole[..cut]).unwrap();
         let lines = ends.iter().filter(|end| **end <= cut).count();
-        match Session::open(&store, Some("s1")) {
+        match open(&store, Some("s1")) {
             Ok(opened) => {
                 assert_eq!(opened.versions().len() + 1, lines, "cut at {cut}");
                 assert_eq!(opened.dropped_torn_line(), !ends.contains(&cut));
@@ -192,17 +188,13 @@ fn a_crash_after_any_byte_leaves_a_history_that_reads() {
     }
     // And it goes on from there.
     fs::write(&path, &whole[..whole.len() - 5]).unwrap();
-    let mut opened = Session::open(&store, Some("s1")).unwrap();
+    let mut opened = open(&store, Some("s1")).unwrap();
     assert_eq!(turn(&mut opened, 7).name, "v3");
-    assert_eq!(seeds(&Session::open(&store, Some("s1")).unwrap()), [2, 3, 7]);
+    assert_eq!(seeds(&open(&store, Some("s1")).unwrap()), [2, 3, 7]);
     // A torn list of sessions loses the order of use, not a session.
     fs::write(store.dir().join("history/sessions.jsonl"), b"{\"sess").unwrap();
-    assert_eq!(session_name_after_tear(&store), "s2");
-    assert_eq!(Session::open(&store, Some("s1")).unwrap().versions().len(), 3);
-}
-
-fn session_name_after_tear(store: &Store) -> String {
-    session(store).name().to_owned()
+    assert_eq!(self::session(&store).name(), "s2");
+    assert_eq!(open(&store, Some("s1")).unwrap().versions().len(), 3);
 }
 
 /// What a user may do in a turn.
@@ -254,7 +246,7 @@ proptest! {
             session.redo("redo", 1).unwrap();
         }
         prop_assert_eq!(session.spec(), &spec);
-        let later = Session::open(&store, Some(session.name())).unwrap();
+        let later = open(&store, Some(session.name())).unwrap();
         prop_assert_eq!(later.versions(), session.versions());
         prop_assert_eq!(later.spec(), session.spec());
     }
