@@ -24,7 +24,7 @@ impl Conversation {
     pub(super) fn commit(&mut self, change: &Change<'_>, listener: &mut dyn Listener) -> Result<Version, Failure> {
         let Change { words, author, edits, after } = *change;
         let mut moved = match self.session.commit(words, author, edits, after) {
-            Err(HistoryError::Moved { moved }) => moved,
+            Err(HistoryError::Moved { moved }) => *moved,
             done => return Ok(done?),
         };
         let seen = self.session.clone();
@@ -34,7 +34,7 @@ impl Conversation {
             let others = self.session.since(&seen);
             let merged = self.merge(change, &seen, &others, &moved)?;
             match self.session.commit_merged(words, author, edits, &merged, Some(&seen)) {
-                Err(HistoryError::Moved { moved: again }) => moved = again,
+                Err(HistoryError::Moved { moved: again }) => moved = *again,
                 done => {
                     let version = done?;
                     let names = others.iter().map(|other| format!("{} ({:?})", other.name, other.words)).collect::<Vec<_>>().join(", ");
@@ -47,7 +47,7 @@ impl Conversation {
 
     /// The spec with a change and with what others added since it was made.
     fn merge(&mut self, change: &Change<'_>, seen: &Session, others: &[Version], moved: &Moved) -> Result<Spec, Failure> {
-        let refuse = |paths: Vec<String>, how: &'static str| Failure::from(HistoryError::Conflict { moved: moved.clone(), paths, how });
+        let refuse = |paths: Vec<String>, how: &'static str| Failure::from(HistoryError::Conflict { moved: Box::new(moved.clone()), paths, how });
         let theirs = self.session.spec().clone();
         let merged = merge(seen.spec(), change.after, &theirs, change.edits)
             .map_err(|conflict| refuse(conflict.paths, "which this turn sets to something else"))?;

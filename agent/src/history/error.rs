@@ -27,13 +27,13 @@ pub enum HistoryError {
     #[error("{moved}: nothing was changed\n{}", moved.advice())]
     Moved {
         /// What was added.
-        moved: Moved,
+        moved: Box<Moved>,
     },
     /// Another process changed what this change needs or sets.
     #[error("{moved} and changed {}, {how}: nothing was changed\n{}", paths.join(", "), moved.advice())]
     Conflict {
         /// What was added.
-        moved: Moved,
+        moved: Box<Moved>,
         /// What both concern.
         paths: Vec<String>,
         /// "which this turn sets to something else", …

@@ -298,7 +298,7 @@ impl Session {
         match self.timeline.head() {
             Some(now) if Some(now.number) != self.head => {
                 let (seen, now, words) = (self.head.map(name), now.name.clone(), now.words.clone());
-                Err(HistoryError::Moved { moved: Moved { session: self.name.clone(), seen, now, words } })
+                Err(HistoryError::Moved { moved: Box::new(Moved { session: self.name.clone(), seen, now, words }) })
             }
             _ => Ok(guard),
         }
