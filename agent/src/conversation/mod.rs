@@ -8,6 +8,8 @@ mod narrate;
 mod observer;
 pub mod output_folder;
 mod rehearse;
+#[cfg(test)]
+mod tests;
 mod turn;
 
 pub use event::{Event, Line, Lines};

@@ -162,6 +162,11 @@ impl Conversation {
     pub fn introduce(&mut self) -> Result<Vec<String>, Failure> {
         let facts = self.engine.facts(&self.session.spec().clone(), Path::new(""), &self.options)?;
         let mut said = narrate::scene(&facts);
+        said.extend(narrate::damage(&self.session));
+        let store = self.store().dir();
+        if store.parent() != std::env::current_dir().and_then(std::fs::canonicalize).ok().as_deref() {
+            said.push(format!("versions are kept in the store {}, session {}", store.display(), self.session.name()));
+        }
         if let Some(head) = self.session.head() {
             let words = if head.note.is_empty() { &head.words } else { &head.note };
             said.push(format!("session {} goes on after {}: {words}", self.session.name(), head.name));

@@ -115,6 +115,19 @@ fn an_equal_entry_stays_in_its_place_and_one_that_lacks_a_blob_is_replaced() {
 }
 
 #[test]
+fn finishing_an_entry_adds_to_a_total_and_looks_at_no_other_entry() {
+    let (_home, store) = store();
+    fs::write(store.dir().join("size"), "1000\n").unwrap();
+    drop(put(&store, "k", &[0; 10_000]));
+    let total = || fs::read_to_string(store.dir().join("size")).unwrap().trim().parse::<u64>().unwrap();
+    assert!((11_000..12_000).contains(&total()), "{}", total());
+    // A total that is wrong leads to one look at everything before anything is evicted.
+    fs::write(store.dir().join("size"), "999999999\n").unwrap();
+    drop(put(&store.clone().with_cap(50_000), "second", &[0; 10_000]));
+    assert!((20_000..22_000).contains(&total()) && store.contains("simulate", "k"));
+}
+
+#[test]
 fn a_flipped_digit_in_the_list_of_an_entry_is_damage() {
     let (_home, store) = store();
     drop(put(&store, "k", b"0123456789"));
