@@ -11,7 +11,7 @@ mod turn;
 pub use event::{Event, Line, Lines};
 pub use narrate::{duration, plan_line, plan_table};
 pub use rehearse::{Rehearsal, rehearse};
-pub use turn::Conversation;
+pub use turn::{Conversation, Outcome};
 
 use phystalk::Frame;
 
