@@ -152,7 +152,7 @@ mod tests {
     const WRITERS: [(&str, &str); 4] = [
         ("agent/src/cli/output.rs", "the writer"),
         ("agent/src/cli/progress.rs", "indicatif draws the bar; it shows numbers and names of stages"),
-        ("agent/src/tui/terminal.rs", "takes the screen; ratatui draws cells, and draw.rs keeps escapes out of them"),
+        ("agent/src/tui/terminal.rs", "takes the screen; ratatui draws its cells, which draw.rs keeps free of escapes"),
         ("agent/src/preview/terminal.rs", "asks the terminal for kitty graphics, a constant"),
     ];
 
