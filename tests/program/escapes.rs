@@ -130,7 +130,8 @@ impl Stage {
     fn check(&self, arguments: &[OsString]) -> bool {
         let output = self.run(arguments);
         for stream in [&output.stdout, &output.stderr] {
-            let printed = std::str::from_utf8(stream).unwrap_or_else(|e| panic!("{arguments:?}: {e}"));
+            let printed = text(stream);
+            assert_eq!(printed.as_bytes(), stream, "{arguments:?} printed no UTF-8");
             let found = printed.chars().find(|c| c.is_control() && !matches!(c, '\n' | '\t') || matches!(c, '\u{2028}' | '\u{202e}'));
             assert_eq!(found, None, "{arguments:?} printed {printed:?}");
         }

@@ -83,13 +83,13 @@ fn keys() -> Vec<(&'static [u8], Input)> {
 #[test]
 fn every_key_is_known_however_its_bytes_are_split() {
     for (bytes, key) in keys() {
-        assert_eq!(decoded(bytes), [key.clone()], "{:?}", String::from_utf8_lossy(bytes));
+        assert_eq!(decoded(bytes), std::slice::from_ref(&key), "{:?}", String::from_utf8_lossy(bytes));
         for at in 0..bytes.len() {
             let (mut decoder, now) = (Decoder::default(), Instant::now());
             let mut inputs = decoder.feed(&bytes[..at], now);
             inputs.extend(decoder.feed(&bytes[at..], now));
             inputs.extend(decoder.expire(now + SEQUENCE));
-            assert_eq!(inputs, [key.clone()], "{:?} split at {at}", String::from_utf8_lossy(bytes));
+            assert_eq!(inputs, std::slice::from_ref(&key), "{:?} split at {at}", String::from_utf8_lossy(bytes));
         }
     }
 }
@@ -101,7 +101,7 @@ fn escape_is_a_key_after_a_twentieth_of_a_second() {
     assert_eq!(decoder.feed(b"\x1b", now), []);
     assert_eq!(decoder.deadline(), Some(now + ESCAPE));
     assert_eq!(decoder.expire(now + ESCAPE / 2), []);
-    assert_eq!(decoder.expire(now + ESCAPE), [escape.clone()]);
+    assert_eq!(decoder.expire(now + ESCAPE), std::slice::from_ref(&escape));
     assert_eq!(decoder.deadline(), None);
     assert_eq!(decoded(b"\x1b\x1b"), [escape.clone(), escape.clone()]);
     assert_eq!(decoded(b"\x1b\x1b[A"), [escape, key_of(KeyCode::Up, KeyModifiers::NONE)]);
