@@ -128,7 +128,7 @@ fn answer(message: &clap::Error) -> ExitCode {
             ExitCode::from(Kind::Usage.code())
         }
         Err(message) => exit_code(output::clap(&message)),
-        // Only what was escaped stood in the way, such as bytes that are no UTF-8.
+        // Escaping mended the command line: it held bytes that are no UTF-8.
         Ok(_) => exit_code(Err(Failure::new(Kind::Usage, message.to_string().trim_start_matches("error: ")))),
     }
 }

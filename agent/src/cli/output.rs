@@ -1,5 +1,5 @@
-//! Standard output and standard error: the only place that writes to them outside the REPL, and so the place that makes text
-//! harmless to terminals ([`sanitise`]). Results go to standard output, remarks to standard error.
+//! Standard output for results, standard error for remarks. Outside the REPL only this module writes to them, so every text is
+//! sanitised here ([`sanitise`]).
 
 use super::exit::{Failure, Kind};
 use super::sanitise;
@@ -33,7 +33,7 @@ fn write_line(text: &str) -> Result<(), Failure> {
     writeln!(out, "{text}").and_then(|()| out.flush()).map_err(|error| unwritable(&error))
 }
 
-/// A closed pipe means that the reader has all it wants, as `head` does: no failure. Every other error loses results.
+/// A closed pipe is no failure: its reader has all it wants, as `head` has. Every other error loses results.
 fn unwritable(error: &io::Error) -> Failure {
     match error.kind() {
         io::ErrorKind::BrokenPipe => Failure::silent(Kind::Pipe),
@@ -41,7 +41,7 @@ fn unwritable(error: &io::Error) -> Failure {
     }
 }
 
-/// Writes a remark. Standard error that cannot be written leaves nobody to tell.
+/// Writes a remark. A failed write is ignored: there is no stream left to report it on.
 pub fn note(text: impl Display) {
     let _ = writeln!(io::stderr(), "{}", sanitise::text(&text.to_string()));
 }
@@ -51,8 +51,8 @@ pub fn error(text: &str) {
     note(format!("error: {}", text.trim_end().replace('\n', "\n  ").replace("\n    ", "\n  ")));
 }
 
-/// Prints clap's help, version or error, in clap's colours where the stream is a terminal. Whoever calls it has escaped
-/// the arguments that clap repeats.
+/// Prints clap's help, version or error, in clap's colours where the stream is a terminal. The caller escapes the arguments
+/// that clap repeats.
 pub fn clap(message: &clap::Error) -> Result<(), Failure> {
     let printed = message.print().and_then(|()| io::stdout().flush());
     if message.use_stderr() { Ok(()) } else { printed.map_err(|error| unwritable(&error)) }

@@ -1,14 +1,14 @@
-//! Terminal escape injection: text from files, arguments and sessions is made harmless before it is printed.
+//! Protection against terminal escape injection: control characters of text from files, arguments and sessions become visible.
 //!
-//! In: any text. Out: the same text, its control and direction characters as visible escapes. A terminal obeys raw ones: they
-//! move the cursor, set the window's title, write to the clipboard (CVE-2003-0063 and its successors), and direction
-//! overrides reorder what a person reads (CVE-2021-42574).
+//! In: any text. Out: the same text with its control and direction characters escaped. Printed raw, control characters move
+//! the cursor, set the window title and write to the clipboard (CVE-2003-0063), and direction overrides reorder the line
+//! that a person reads (CVE-2021-42574).
 
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// Whether a terminal obeys this character, or a person cannot see it, where it stands for itself in no script.
-/// Joiners (U+200C, U+200D) and marks of direction that only touch their neighbours stay: words and emoji need them.
+/// Whether the character is a control, a line separator, a direction override, or invisible. Joiners (U+200C, U+200D) and
+/// direction marks (U+200E, U+200F) stay: words and emoji need them, and they affect their neighbours only.
 pub fn is_unprintable(c: char) -> bool {
     let in_text = matches!(c, '\n' | '\t');
     let separator = matches!(c, '\u{2028}' | '\u{2029}');
@@ -25,8 +25,7 @@ pub fn text(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// JSON for programs: ESC becomes `\u001b`, which reads back as the same string. Outside of its strings JSON holds none of
-/// these characters.
+/// JSON for programs: ESC becomes `\u001b`, so the string's value stays. Valid JSON holds these characters in strings only.
 pub fn json(text: &str) -> Cow<'_, str> {
     escaped(text, |out, c| {
         for unit in c.encode_utf16(&mut [0; 2]) {

@@ -8,6 +8,7 @@ use std::sync::mpsc::Sender;
 
 /// What the terminal reports.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(not(unix), allow(dead_code))]
 pub enum Input {
     /// A key.
     Key(KeyEvent),
@@ -20,9 +21,9 @@ pub enum Input {
     },
     /// The terminal has another size.
     Resized,
-    /// Somebody asks the process to stop and leave the terminal to the shell (SIGTSTP).
+    /// SIGTSTP: the process has to stop and leave the terminal to the shell.
     Suspend,
-    /// The process goes on after a stop (SIGCONT): the shell has changed the terminal's mode meanwhile.
+    /// SIGCONT: the process runs again after a stop, in which the shell changed the terminal's mode.
     Resumed,
     /// The terminal is gone.
     Closed,
@@ -56,7 +57,7 @@ mod unix {
         let mut decoder = Decoder::default();
         loop {
             let Some(inputs) = next_inputs(&mut decoder) else {
-                // Nobody listens any more only while the program ends.
+                // The receiver is gone only while the program ends.
                 let _ = post.send(Message::Input(Input::Closed));
                 return;
             };
@@ -95,7 +96,7 @@ mod unix {
                 SIGCONT => Input::Resumed,
                 _ => Input::Resized,
             };
-            // While the program ends the terminal is already given back: only the stop itself is left to do.
+            // The receiver is gone: the terminal is already given back, so the process only has to stop.
             if post.send(Message::Input(input)).is_err() && signal == SIGTSTP {
                 let _ = signal_hook::low_level::emulate_default_handler(SIGTSTP);
             }

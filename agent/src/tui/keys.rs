@@ -64,7 +64,7 @@ impl Decoder {
         for &byte in bytes {
             match &mut self.paste {
                 Some(paste) => {
-                    // Ctrl-C does not keep a paste open: who presses it again and again is heard a second after the text.
+                    // Ctrl-C does not reset the timer: pressed repeatedly in a dead paste, it still ends it.
                     if byte != CTRL_C {
                         self.last = Some(now);
                     }
@@ -166,7 +166,7 @@ impl Paste {
     }
 }
 
-/// How far a sequence is. Each byte is looked at once it comes, so that only the last one can break it.
+/// How far a sequence is. It is scanned after each byte, so only the last byte can break it.
 fn scan(sequence: &[u8]) -> Scan {
     match sequence {
         [ESC] => Scan::Open,
@@ -212,7 +212,8 @@ fn scan_character(bytes: &[u8]) -> Scan {
     }
 }
 
-/// The key of a whole sequence. Reports of the mouse and of the terminal itself are none: they were not asked for.
+/// The key of a whole sequence. Reports of the mouse and of the terminal are dropped: the REPL enables none, and terminput
+/// subtracts from their coordinates without a check.
 fn key(sequence: &[u8]) -> Option<KeyEvent> {
     if matches!(sequence, [ESC, b'[', b'<'..=b'?', ..] | [ESC, b'[', .., b'M' | b'm' | b'c']) || sequence.starts_with(b"\x1b_G") {
         return None;
