@@ -279,3 +279,21 @@ fn scenes_are_described_and_converted() {
     desk.expect(0, &["convert", "b.ply", "c.splat"]);
     assert_eq!(std::fs::read(desk.path("a.splat")).unwrap(), std::fs::read(desk.path("c.splat")).unwrap());
 }
+
+#[test]
+fn undo_and_redo_with_files_are_one_json_object() {
+    let desk = Desk::new();
+    desk.expect(0, &small(&["exec", "block.ply", "-p", "jump 10 cm", "-p", "heavier", "--no-render"]));
+    for (command, from, to) in [("undo", "v2", "v3"), ("redo", "v3", "v4")] {
+        let output = desk.expect(0, &[command, "--json", "--no-render", "--size", "64x48", "--out", "again"]);
+        let [object] = lines(&output.stdout).try_into().unwrap();
+        let folder = format!("again/{to}");
+        let found = [&object["session"], &object["from"], &object["to"], &object["version"], &object["out"]].map(|v| v.as_str().unwrap());
+        assert_eq!(found, ["s1", from, to, to, &folder]);
+        assert_eq!((object["metrics"]["version"].as_str(), object["plan"]["stages"].as_array().unwrap().len()), (Some(to), 5));
+        assert!(object["note"].is_string() && object["error"].is_null() && desk.path(&folder).join("spec.toml").is_file());
+    }
+    let output = desk.expect(1, &["redo", "--json", "--no-render", "--out", "again"]);
+    let [object] = lines(&output.stdout).try_into().unwrap();
+    assert!(object["to"].is_null() && object["version"].is_null() && object["error"].as_str().unwrap().starts_with("nothing to redo"));
+}

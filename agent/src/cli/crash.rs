@@ -1,7 +1,6 @@
 //! A bug in the program itself: the terminal is given back, one sentence is said, exit code 70.
 
 use super::exit::Kind;
-use std::io::Write;
 use std::panic::PanicHookInfo;
 use std::sync::Mutex;
 
@@ -29,7 +28,7 @@ pub fn restore_terminal() {
 pub fn install() {
     std::panic::set_hook(Box::new(|info| {
         restore_terminal();
-        let _ = writeln!(std::io::stderr(), "{}", sentence(info));
+        super::output::note(sentence(info));
         std::process::exit(i32::from(Kind::Bug.code()));
     }));
 }

@@ -1,6 +1,6 @@
 //! `phystalk demo`: the built-in scene, five turns, offline, and what to try next.
 
-use super::exit::{Failure, Kind};
+use super::exit::Failure;
 use super::flags::Flags;
 use super::text::{JsonLines, Teller};
 use super::{exec, setup, signals};
@@ -20,7 +20,7 @@ pub fn run(flags: &Flags) -> Result<(), Failure> {
     if flags.json {
         let mut listener = JsonLines::new(&stop);
         let code = exec::turns(&mut conversation, Vec::new(), &turns, &mut listener, &stop);
-        return if listener.broken { Err(Failure::silent(Kind::Pipe)) } else { Failure::from_code(code) };
+        return listener.end(code);
     }
     let mut teller = Teller::new(flags.quiet, &stop);
     let code = exec::turns(&mut conversation, Vec::new(), &turns, &mut teller, &stop);
@@ -35,5 +35,5 @@ pub fn run(flags: &Flags) -> Result<(), Failure> {
              \x20 {program} diff v1 v2\n      what \"softer\" changed"
         ));
     }
-    if teller.broken { Err(Failure::silent(Kind::Pipe)) } else { Failure::from_code(code) }
+    teller.end(code)
 }

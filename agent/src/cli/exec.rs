@@ -1,6 +1,6 @@
 //! `phystalk exec SCENE -p TEXT…`: a conversation without a terminal.
 
-use super::exit::{Failure, Kind};
+use super::exit::Failure;
 use super::flags::Flags;
 use super::text::{JsonLines, Teller};
 use super::{setup, signals};
@@ -24,14 +24,15 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     let edits = if conversation.resumed { setup::edits(flags)? } else { Vec::new() };
     let stop = Stop::default();
     let _guard = signals::stop_on_signal(&stop);
-    let (code, broken) = if flags.json {
+    if flags.json {
         let mut listener = JsonLines::new(&stop);
-        (turns(&mut conversation, edits, &arguments.prompt, &mut listener, &stop), listener.broken)
+        let code = turns(&mut conversation, edits, &arguments.prompt, &mut listener, &stop);
+        listener.end(code)
     } else {
         let mut listener = Teller::new(flags.quiet, &stop);
-        (turns(&mut conversation, edits, &arguments.prompt, &mut listener, &stop), listener.broken)
-    };
-    if broken { Err(Failure::silent(Kind::Pipe)) } else { Failure::from_code(code) }
+        let code = turns(&mut conversation, edits, &arguments.prompt, &mut listener, &stop);
+        listener.end(code)
+    }
 }
 
 /// All turns, until one is stopped: first the edits, if there are any, then the prompts; where there is neither, the

@@ -113,10 +113,7 @@ impl Failure {
 
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Failure {
-        match error.kind() {
-            io::ErrorKind::BrokenPipe => Failure::silent(Kind::Pipe),
-            _ => Failure::other(error),
-        }
+        Failure::other(error)
     }
 }
 

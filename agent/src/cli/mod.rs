@@ -1,6 +1,7 @@
 //! Commands, flags, exit codes. One command a file; [`main`] is the whole life of the process.
 
 mod bench;
+mod collect;
 mod completions;
 pub mod crash;
 mod demo;
@@ -17,6 +18,7 @@ mod plan;
 mod progress;
 mod repl;
 mod run;
+pub mod sanitise;
 mod scene;
 mod schema;
 mod setup;
@@ -99,24 +101,38 @@ pub fn main() -> ExitCode {
     std::sync::LazyLock::force(&text::STARTED);
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => {
-            let failed = error.use_stderr();
-            let _ = error.print();
-            return ExitCode::from(if failed { Kind::Usage.code() } else { 0 });
-        }
+        Err(message) => return answer(&message),
     };
     start_log();
     signals::listen();
     let result = cli.flags.check_provider().and_then(|()| run(&cli));
-    match (result, signals::received()) {
-        (_, Some(signal)) => ExitCode::from(signal.code()),
-        (Ok(()), None) => ExitCode::SUCCESS,
-        (Err(failure), None) => {
-            if !failure.message.is_empty() {
-                output::error(&failure.message);
-            }
-            ExitCode::from(failure.kind.code())
+    match signals::received() {
+        Some(signal) => ExitCode::from(signal.code()),
+        None => exit_code(result),
+    }
+}
+
+/// The exit code of a result whose failure, if it has a message, is printed here.
+fn exit_code(result: Result<(), Failure>) -> ExitCode {
+    let Err(failure) = result else { return ExitCode::SUCCESS };
+    if !failure.message.is_empty() {
+        output::error(&failure.message);
+    }
+    ExitCode::from(failure.kind.code())
+}
+
+/// Prints clap's help, version or error. Errors repeat arguments, so the command line is parsed again with its control
+/// characters escaped: the message shows them, and keeps clap's colours.
+fn answer(message: &clap::Error) -> ExitCode {
+    let escaped = std::env::args_os().map(|argument| sanitise::text(&argument.to_string_lossy()).into_owned());
+    match Cli::try_parse_from(escaped) {
+        Err(message) if message.use_stderr() => {
+            let _ = output::clap(&message);
+            ExitCode::from(Kind::Usage.code())
         }
+        Err(message) => exit_code(output::clap(&message)),
+        // Escaping mended the command line: it held bytes that are no UTF-8.
+        Ok(_) => exit_code(Err(Failure::new(Kind::Usage, message.to_string().trim_start_matches("error: ")))),
     }
 }
 
@@ -156,7 +172,7 @@ fn command_names() -> Vec<String> {
 /// Sends the library's log to standard error, only where `PHYSTALK_LOG` asks for it (as `phystalk=debug`).
 fn start_log() {
     if let Ok(filter) = tracing_subscriber::EnvFilter::try_from_env("PHYSTALK_LOG") {
-        tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+        tracing_subscriber::fmt().with_env_filter(filter).with_ansi(false).with_writer(|| output::Log).init();
     }
 }
 

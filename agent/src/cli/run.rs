@@ -1,13 +1,13 @@
 //! `phystalk run SPEC|VERSION`: a spec, no language; or the files of a version that is kept.
 
+use super::collect::Collector;
 use super::exit::{Failure, Kind};
 use super::flags::Flags;
 use super::text::Teller;
 use super::{output, setup, signals, stores};
-use crate::conversation::{Conversation, Event, Listener};
+use crate::conversation::{Conversation, Listener, Outcome};
 use clap::Args;
 use phystalk::Stop;
-use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
@@ -41,18 +41,13 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
     if flags.json {
         let mut collector = Collector::default();
         let outcome = run.turn(&mut collector, &stop);
-        let version = outcome.version.unwrap_or_default();
-        let metrics: Option<Value> = std::fs::read(run.out.join(&version).join("metrics.json")).ok().and_then(|b| serde_json::from_slice(&b).ok());
-        output::json(&json!({
-            "session": run.conversation.session().name(), "version": version, "out": run.out.join(&version), "exit_code": outcome.exit_code,
-            "plan": { "stages": collector.stages }, "metrics": metrics, "warnings": collector.warnings, "error": collector.error,
-        }))?;
+        output::json(&collector.object(run.conversation.session().name(), &outcome, &run.out))?;
         return Failure::from_code(outcome.exit_code);
     }
     let mut teller = Teller::new(flags.quiet, &stop);
     run.conversation.open(&mut teller);
     let outcome = run.turn(&mut teller, &stop);
-    if teller.broken { Err(Failure::silent(Kind::Pipe)) } else { Failure::from_code(outcome.exit_code) }
+    teller.end(outcome.exit_code)
 }
 
 fn of_spec(path: &Path, flags: &Flags) -> Result<Run, Failure> {
@@ -86,32 +81,10 @@ fn of_version(version: &str, flags: &Flags) -> Result<Run, Failure> {
 }
 
 impl Run {
-    fn turn(&mut self, listener: &mut dyn Listener, stop: &Stop) -> crate::conversation::Outcome {
+    fn turn(&mut self, listener: &mut dyn Listener, stop: &Stop) -> Outcome {
         match &self.what {
             What::Spec(words) => self.conversation.run_base(words, listener, stop),
             What::Version(version) => self.conversation.run_again(version, listener, stop),
-        }
-    }
-}
-
-/// Keeps what the one JSON object of a run says.
-#[derive(Default)]
-struct Collector {
-    stages: Vec<Value>,
-    warnings: Vec<String>,
-    error: Option<String>,
-}
-
-impl Listener for Collector {
-    fn event(&mut self, event: Event) {
-        match event {
-            Event::PlanReady { stages } => self.stages = stages.iter().filter_map(|s| serde_json::to_value(s).ok()).collect(),
-            Event::Warning { text } => self.warnings.push(text),
-            Event::TurnFailed { error, .. } => {
-                output::error(&error);
-                self.error = Some(error);
-            }
-            _ => {}
         }
     }
 }

@@ -31,5 +31,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         What::Events => schema_for!(Line).to_value(),
         What::Metrics => schema_for!(phystalk::stages::Metrics).to_value(),
     };
-    output::line(serde_json::to_string_pretty(&schema).map_err(Failure::other)?)
+    output::json_indented(&schema)
 }

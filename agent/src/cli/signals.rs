@@ -3,7 +3,6 @@
 use super::crash::restore_terminal;
 use super::exit::Kind;
 use phystalk::Stop;
-use std::io::Write;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -49,7 +48,7 @@ fn deliver(kind: Kind) {
     match running {
         Some(stop) if !repeated => {
             stop.raise();
-            let _ = writeln!(std::io::stderr(), "stopping: what is done is kept (again to quit at once)");
+            super::output::note("stopping: what is done is kept (again to quit at once)");
         }
         _ => {
             restore_terminal();

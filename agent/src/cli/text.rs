@@ -1,7 +1,7 @@
 //! Views of a conversation's events for people and for programs.
 
-use super::exit::Kind;
-use super::output;
+use super::exit::Failure;
+use super::output::{self, Outlet};
 use super::progress::Bar;
 use crate::conversation::{Event, Lines, Listener, duration, plan_line};
 use phystalk::{Frame, Stop};
@@ -15,30 +15,30 @@ pub static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
 /// Events as lines of text: results on standard output, progress and warnings on standard error.
 pub struct Teller {
     quiet: bool,
-    stop: Stop,
+    outlet: Outlet,
     bar: Bar,
     folder: Option<PathBuf>,
     frames: u32,
     pictured: bool,
     /// Words not understood, held back until it is known whether the failure repeats them.
     words: Vec<String>,
-    /// The reader of standard output went away.
-    pub broken: bool,
 }
 
 impl Teller {
-    /// A teller; a broken pipe raises `stop`.
+    /// A teller; a failed write raises `stop`.
     pub fn new(quiet: bool, stop: &Stop) -> Teller {
-        Teller { quiet, stop: stop.clone(), bar: Bar::new(quiet), folder: None, frames: 0, pictured: false, words: Vec::new(), broken: false }
+        Teller { quiet, outlet: Outlet::new(stop), bar: Bar::new(quiet), folder: None, frames: 0, pictured: false, words: Vec::new() }
     }
 
     /// Prints one line of result above the progress.
     pub fn tell(&mut self, text: impl std::fmt::Display) {
         self.bar.clear();
-        if let Err(failure) = output::line(text) {
-            self.broken |= failure.kind == Kind::Pipe;
-            self.stop.raise();
-        }
+        self.outlet.line(text);
+    }
+
+    /// Result of the command whose turns ended with `exit_code`.
+    pub fn end(self, exit_code: u8) -> Result<(), Failure> {
+        self.outlet.end(exit_code)
     }
 
     fn aside(&mut self, text: String) {
@@ -122,25 +122,23 @@ impl Listener for Teller {
 /// Events as JSON Lines on standard output.
 pub struct JsonLines {
     lines: Lines,
-    stop: Stop,
-    /// The reader of standard output went away.
-    pub broken: bool,
+    outlet: Outlet,
 }
 
 impl JsonLines {
-    /// A stream that starts at 0; a broken pipe raises `stop`.
+    /// A stream that starts at 0; a failed write raises `stop`.
     pub fn new(stop: &Stop) -> JsonLines {
-        JsonLines { lines: Lines::default(), stop: stop.clone(), broken: false }
+        JsonLines { lines: Lines::default(), outlet: Outlet::new(stop) }
+    }
+
+    /// Result of the command whose turns ended with `exit_code`.
+    pub fn end(self, exit_code: u8) -> Result<(), Failure> {
+        self.outlet.end(exit_code)
     }
 }
 
 impl Listener for JsonLines {
     fn event(&mut self, event: Event) {
-        let line = self.lines.line(event);
-        let written = serde_json::to_string(&line).map_err(super::exit::Failure::other).and_then(output::line);
-        if let Err(failure) = written {
-            self.broken |= failure.kind == Kind::Pipe;
-            self.stop.raise();
-        }
+        self.outlet.json_line(&self.lines.line(event));
     }
 }

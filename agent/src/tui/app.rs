@@ -76,6 +76,10 @@ pub enum Effect {
     Window,
     /// Clear the screen and draw everything again.
     Redraw,
+    /// Give the terminal back and stop the process.
+    Suspend,
+    /// Take the terminal again after a stop.
+    Retake,
     /// Leave.
     Quit,
 }
@@ -173,9 +177,13 @@ impl App {
         Vec::new()
     }
 
-    /// Takes pasted text.
-    pub fn paste(&mut self, text: &str) {
+    /// Takes pasted text, and reports how many bytes of it were lost.
+    pub fn paste(&mut self, text: &str, lost: usize) {
         self.composer.paste(text);
+        if lost > 0 {
+            let said = format!("the pasted text was too long: {lost} bytes at its end were dropped; Ctrl+C clears the line");
+            self.transcript.add(Voice::Warning, said);
+        }
     }
 
     fn complete(&mut self) {
@@ -241,7 +249,7 @@ impl App {
         }
     }
 
-    fn say(&mut self, voice: Voice, text: impl Into<String>) -> Vec<Effect> {
+    fn say(&mut self, voice: Voice, text: impl AsRef<str>) -> Vec<Effect> {
         self.transcript.add(voice, text);
         Vec::new()
     }

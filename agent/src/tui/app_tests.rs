@@ -207,3 +207,35 @@ fn every_size_draws_without_a_crash() {
         }
     }
 }
+
+#[test]
+fn no_text_reaches_the_terminal_as_an_escape() {
+    let hostile = "a\x1b]0;title\x07\u{9b}2J\x7f\u{202e}b\u{2028}c\r";
+    let reel = Reel::default();
+    let mut app = busy(&reel);
+    app.session = hostile.to_owned();
+    for voice in [Voice::You, Voice::Agent, Voice::Change, Voice::Detail, Voice::Warning, Voice::Error] {
+        app.transcript.add(voice, hostile);
+    }
+    app.paste(hostile, 3);
+    typed(&mut app, "\u{9b}\u{202e}");
+    event(&mut app, Event::StageStarted { stage: hostile.into() });
+    reel.start(hostile);
+    let mut screens = vec![text(&screen(&mut app, 100, 40))];
+    app.update(Update::Device(hostile.into()), Instant::now());
+    app.update(Update::Finished, Instant::now());
+    screens.push(text(&screen(&mut app, 100, 40)));
+    for shown in screens {
+        assert!(!shown.contains(crate::cli::sanitise::is_unprintable), "{shown:?}");
+        assert!(shown.contains("a\\u{1b}]0;title"), "escapes are shown: {shown}");
+        assert!(shown.contains("3 bytes at its end were dropped"), "{shown}");
+    }
+    assert!(!app.composer.text().contains(crate::cli::sanitise::is_unprintable));
+}
+
+/// The symbols of a screen, rows joined by newlines.
+fn text(terminal: &Terminal<TestBackend>) -> String {
+    let buffer = terminal.backend().buffer();
+    let rows = buffer.content().chunks(usize::from(buffer.area.width));
+    rows.map(|row| row.iter().map(|cell| cell.symbol()).collect::<String>()).collect::<Vec<_>>().join("\n")
+}

@@ -1,5 +1,6 @@
 //! The line editor: several lines, a history, the usual keys.
 
+use crate::cli::sanitise::is_unprintable;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::text::Span;
 
@@ -45,10 +46,13 @@ impl Composer {
         self.recall = None;
     }
 
-    /// Inserts pasted text; control characters other than newlines are dropped.
+    /// Inserts pasted text without its control characters.
     pub fn paste(&mut self, text: &str) {
         let clean = text.replace("\r\n", "\n").replace(['\r', '\t'], " ");
-        clean.chars().filter(|c| *c == '\n' || !c.is_control()).for_each(|c| self.insert(c));
+        let before = self.text.len();
+        self.text.splice(self.cursor..self.cursor, clean.chars().filter(|c| !is_unprintable(*c)));
+        self.cursor += self.text.len() - before;
+        self.recall = None;
     }
 
     /// Takes a key.
@@ -79,7 +83,7 @@ impl Composer {
             KeyCode::Delete => self.delete(self.cursor, (self.cursor + 1).min(self.text.len())),
             KeyCode::Up => self.up(),
             KeyCode::Down => self.down(),
-            KeyCode::Char(c) if !control && !alt => self.insert(c),
+            KeyCode::Char(c) if !control && !alt && !is_unprintable(c) => self.insert(c),
             _ => return Typed::Ignored,
         }
         Typed::Changed

@@ -3,7 +3,9 @@
 
 use super::app::App;
 use super::pane::Play;
+use crate::cli::sanitise::is_unprintable;
 use ratatui::Frame;
+use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Paragraph};
@@ -54,11 +56,28 @@ pub fn draw(app: &mut App, frame: &mut Frame<'_>) {
     let (rows, cursor) = app.composer.rows(prompt_width);
     let parts = parts(area, rows.len() as u16, app.preview_shown, !app.pane.is_empty());
     transcript(app, frame, parts.transcript);
-    if let Some(place) = parts.preview {
-        preview(app, frame, place);
-    }
     composer(app, frame, parts.composer, &rows, cursor);
     frame.render_widget(Paragraph::new(status(app, parts.status.width)), parts.status);
+    let [picture, line] = Layout::vertical([Constraint::Min(1), Constraint::Length(1)]).areas(parts.preview.unwrap_or_default());
+    if parts.preview.is_some() {
+        caption(app, frame, line);
+    }
+    replace_unprintable(frame.buffer_mut());
+    // Kitty's pictures are escapes in cells, so they come last.
+    if parts.preview.is_some()
+        && let Some((place, protocol)) = app.pane.painted(picture)
+    {
+        frame.render_widget(Image::new(protocol), place);
+    }
+}
+
+/// Keeps escapes and direction overrides off the terminal, whatever text was drawn.
+fn replace_unprintable(buffer: &mut Buffer) {
+    for cell in &mut buffer.content {
+        if cell.symbol().contains(is_unprintable) {
+            cell.set_symbol("\u{fffd}");
+        }
+    }
 }
 
 fn transcript(app: &mut App, frame: &mut Frame<'_>, area: Rect) {
@@ -68,11 +87,7 @@ fn transcript(app: &mut App, frame: &mut Frame<'_>, area: Rect) {
     frame.render_widget(Paragraph::new(lines), bottom);
 }
 
-fn preview(app: &mut App, frame: &mut Frame<'_>, area: Rect) {
-    let [picture, caption] = Layout::vertical([Constraint::Min(1), Constraint::Length(1)]).areas(area);
-    if let Some((place, protocol)) = app.pane.painted(picture) {
-        frame.render_widget(Image::new(protocol), place);
-    }
+fn caption(app: &App, frame: &mut Frame<'_>, area: Rect) {
     if let Some(c) = app.pane.caption() {
         let state = match c.play {
             Play::Playing => " playing",
@@ -83,7 +98,7 @@ fn preview(app: &mut App, frame: &mut Frame<'_>, area: Rect) {
             Play::Still => c.version,
             _ => format!("{} {:>3}/{} {:.2} s{state}", c.version, c.frame, c.last, c.time_s),
         };
-        frame.render_widget(Paragraph::new(Line::styled(text, app.theme.dim)).centered(), caption);
+        frame.render_widget(Paragraph::new(Line::styled(text, app.theme.dim)).centered(), area);
     }
 }
 

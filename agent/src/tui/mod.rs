@@ -1,12 +1,14 @@
-//! The REPL: a transcript, a line to type in, a moving preview. One thread draws and takes keys, one
-//! owns the engine, one reads the keyboard; they speak through one channel. It draws when something
-//! changed, never else.
+//! The REPL: a transcript, a line to type in, a moving preview. One thread draws, one owns the engine, two read the keyboard
+//! and the terminal's signals; they send messages through one channel. It draws when something changed, never else.
 
 mod answer;
 mod app;
 mod commands;
 mod composer;
 mod draw;
+mod keyboard;
+#[cfg(unix)]
+mod keys;
 mod pane;
 mod terminal;
 mod theme;
@@ -19,7 +21,7 @@ use crate::history::Sessions;
 use crate::preview::Reel;
 use crate::preview::terminal::Graphics;
 use app::{App, Effect, Update};
-use crossterm::event::Event as Input;
+use keyboard::Input;
 use pane::Pane;
 use phystalk::Stop;
 use std::process::Child;
@@ -38,7 +40,7 @@ const FAREWELL: Duration = Duration::from_secs(2);
 
 /// What wakes the thread that draws.
 pub enum Message {
-    /// A key, a paste, another size.
+    /// A key, a paste, a signal of the terminal.
     Input(Input),
     /// News of the engine's thread.
     Update(Update),
@@ -58,9 +60,8 @@ pub struct Options {
 pub fn run(conversation: Conversation, options: Options) -> Result<(), Failure> {
     let session = conversation.session().name().to_owned();
     let sessions = conversation.session().sessions().clone();
-    let store = conversation.store().clone();
     let scene = conversation.session().spec().scene.file.clone();
-    let mut screen = Screen::take(&worker::log_file(store.dir()))?;
+    let mut screen = Screen::take(conversation.store().driver_log().ok())?;
     let painter = options.graphics.settle();
     screen.painted_by(painter);
     let reel = Reel::default();
@@ -76,7 +77,7 @@ pub fn run(conversation: Conversation, options: Options) -> Result<(), Failure> 
         let serve = move || worker::serve(conversation, &requests, &post, &reel, &brake);
         std::thread::Builder::new().name("engine".into()).spawn(serve)?
     };
-    read_keys(post)?;
+    keyboard::listen(&post)?;
     let mut desk = Desk { ask, brake, sessions, session, window: Window { open: options.window, child: None } };
     let mut first = app.open();
     first.extend(options.lines.into_iter().flat_map(|line| app.enter(line, Instant::now())));
@@ -91,19 +92,6 @@ pub fn run(conversation: Conversation, options: Options) -> Result<(), Failure> 
         std::thread::sleep(BREATH);
     }
     result
-}
-
-/// The keyboard's thread: it lives as long as the process.
-fn read_keys(post: Sender<Message>) -> Result<(), Failure> {
-    let read = move || {
-        while let Ok(input) = crossterm::event::read() {
-            if post.send(Message::Input(input)).is_err() {
-                break;
-            }
-        }
-    };
-    std::thread::Builder::new().name("keys".into()).spawn(read)?;
-    Ok(())
 }
 
 /// What effects act on.
@@ -186,12 +174,14 @@ fn take(app: &mut App, message: Message) -> Vec<Effect> {
     let now = Instant::now();
     match message {
         Message::Input(Input::Key(key)) => app.key(key, now),
-        Message::Input(Input::Paste(text)) => {
-            app.paste(&text);
+        Message::Input(Input::Paste { text, lost }) => {
+            app.paste(&text, lost);
             Vec::new()
         }
-        Message::Input(Input::Resize(..)) => vec![Effect::Redraw],
-        Message::Input(_) => Vec::new(),
+        Message::Input(Input::Resized) => vec![Effect::Redraw],
+        Message::Input(Input::Suspend) => vec![Effect::Suspend],
+        Message::Input(Input::Resumed) => vec![Effect::Retake, Effect::Redraw],
+        Message::Input(Input::Closed) => vec![Effect::Stop, Effect::Quit],
         Message::Update(update) => app.update(update, now),
     }
 }
@@ -217,6 +207,8 @@ fn act(app: &mut App, screen: &mut Screen, desk: &mut Desk, effects: Vec<Effect>
                 app.pane.repaint();
                 screen.start_over()?;
             }
+            Effect::Suspend => screen.suspend(),
+            Effect::Retake => screen.retake()?,
             Effect::Quit => return Ok(true),
         }
     }

@@ -1,4 +1,4 @@
-//! The screen: taken at the start, given back at the end, after a crash and on signals.
+//! The screen: taken at the start and after a stop, given back at the end, before a stop, after a crash and on signals.
 
 use crate::cli::crash;
 use crate::preview::terminal::{Painter, forget_pictures};
@@ -8,12 +8,12 @@ use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 use std::fs::File;
 use std::io::{self, Stdout, Write};
-use std::path::Path;
 
 /// The screen while it is ours.
 pub struct Screen {
     /// What to draw on.
     pub terminal: Terminal<CrosstermBackend<Stdout>>,
+    painter: Option<Painter>,
     errors: Option<Errors>,
 }
 
@@ -25,13 +25,31 @@ struct Errors {
 
 impl Screen {
     /// Takes the screen: raw keys, the alternate screen, no mouse. What drivers write to standard
-    /// error goes to `log` meanwhile.
-    pub fn take(log: &Path) -> io::Result<Screen> {
-        crossterm::terminal::enable_raw_mode()?;
+    /// error goes to `log` meanwhile, where there is one.
+    pub fn take(log: Option<File>) -> io::Result<Screen> {
         crash::on_crash(|| give_back(None));
-        crossterm::execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste)?;
-        let errors = File::create(log).and_then(|file| redirect_errors(&file)).ok();
-        Ok(Screen { terminal: Terminal::new(CrosstermBackend::new(io::stdout()))?, errors })
+        set_modes()?;
+        let errors = log.and_then(|file| redirect_errors(&file).ok());
+        Ok(Screen { terminal: Terminal::new(CrosstermBackend::new(io::stdout()))?, painter: None, errors })
+    }
+
+    /// Gives the terminal back and stops the process, as SIGTSTP does by default.
+    #[cfg(unix)]
+    pub fn suspend(&mut self) {
+        give_back(self.painter);
+        // It fails for unknown signals only.
+        let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP);
+    }
+
+    /// Nothing asks for it here.
+    #[cfg(not(unix))]
+    pub fn suspend(&mut self) {}
+
+    /// Takes the terminal again after a stop, in which the shell set modes of its own.
+    pub fn retake(&mut self) -> io::Result<()> {
+        // crossterm does nothing where it believes that raw mode is on, and after SIGSTOP it does.
+        crossterm::terminal::disable_raw_mode()?;
+        set_modes()
     }
 
     /// Clears the screen, of whatever size it is now, so that the next drawing sends everything. The terminal is not
@@ -42,7 +60,8 @@ impl Screen {
     }
 
     /// Remembers that pictures have to be removed from the terminal's memory at the end.
-    pub fn painted_by(&self, painter: Option<Painter>) {
+    pub fn painted_by(&mut self, painter: Option<Painter>) {
+        self.painter = painter;
         crash::on_crash(move || give_back(painter));
     }
 }
@@ -52,6 +71,12 @@ impl Drop for Screen {
         crash::restore_terminal();
         restore_errors(self.errors.take());
     }
+}
+
+/// Raw keys, the alternate screen, pastes marked as such.
+fn set_modes() -> io::Result<()> {
+    crossterm::terminal::enable_raw_mode()?;
+    crossterm::execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste)
 }
 
 /// Leaves the terminal as it was found. Errors have nowhere to go by then.

@@ -1,6 +1,7 @@
 //! What was said and what came of it, as lines of the width at hand.
 
 use super::theme::Theme;
+use crate::cli::sanitise;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
@@ -38,9 +39,9 @@ pub struct Transcript {
 }
 
 impl Transcript {
-    /// Adds an entry at the end and shows the end.
-    pub fn add(&mut self, voice: Voice, text: impl Into<String>) {
-        self.entries.push(Entry { voice, text: text.into() });
+    /// Adds an entry at the end and shows the end. Control characters are shown as escapes.
+    pub fn add(&mut self, voice: Voice, text: impl AsRef<str>) {
+        self.entries.push(Entry { voice, text: sanitise::text(text.as_ref()).into_owned() });
         self.up = 0;
     }
 

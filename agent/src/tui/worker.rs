@@ -8,7 +8,7 @@ use crate::preview::Reel;
 use phystalk::spec::{Camera, Edit};
 use phystalk::{Frame, Stop};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender};
 
 /// A message to the thread that draws.
@@ -149,9 +149,4 @@ impl Listener for Relay<'_> {
         self.reel.start(version);
         self.send(Update::Pictures);
     }
-}
-
-/// Where standard error goes while the screen is ours.
-pub fn log_file(store: &Path) -> PathBuf {
-    store.join("repl.log")
 }
