@@ -1,6 +1,7 @@
 //! Files that appear whole or not at all.
 
 use super::ExportError;
+use crate::store::before_write;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -27,6 +28,7 @@ impl Pending {
             }
             let unique = format!(".{}.{}-{}.tmp", name.to_string_lossy(), std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
             let temporary = path.with_file_name(unique);
+            before_write();
             let file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
             Ok((temporary, file))
         };
@@ -49,6 +51,7 @@ impl Pending {
     pub(super) fn finish(mut self) -> Result<(), ExportError> {
         self.with(|file| file.flush())?;
         self.file = None;
+        before_write();
         fs::rename(&self.temporary, &self.path).map_err(|e| ExportError::write(&self.path, e))
     }
 }

@@ -1,12 +1,12 @@
-//! Fault injection: ends the process before its n-th write to a store, so that tests see every state that a crash can leave.
+//! Fault injection: ends the process before its n-th write to a store or to output files, so that tests see every state that a crash can leave.
 //!
 //! Only in builds with debug assertions, and only where `PHYSTALK_KILL_AT_WRITE` is set: a release has none of this.
 
-/// Stands before every change of a store's files.
+/// Stands before every change of the files of a store or of an output folder.
 #[cfg(not(debug_assertions))]
 pub(crate) fn before_write() {}
 
-/// Stands before every change of a store's files.
+/// Stands before every change of the files of a store or of an output folder.
 #[cfg(debug_assertions)]
 pub(crate) fn before_write() {
     use std::sync::LazyLock;

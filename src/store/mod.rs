@@ -47,6 +47,7 @@ use place::Format;
 pub use atomic::write_atomic;
 pub use entry::{BlobReader, Entry};
 pub use error::StoreError;
+pub(crate) use fault::before_write;
 pub use evict::{Collected, Usage};
 pub use lock::Guard;
 pub use log::Log;
