@@ -15,6 +15,9 @@ use support::{Desk, block, text};
 /// Sets a window's title; 8-bit CSI; DEL; a direction override; a line separator.
 const HOSTILE: &str = "\u{1b}]0;owned\u{7}\u{9b}31m\u{7f}\u{202e}\u{2028}";
 
+/// A sentence that the phrasebook understands and the store keeps.
+const WORDS: &str = "jump 10 cm \u{1b}\u{7}\u{9b}\u{7f}\u{202e}\u{2028}!";
+
 /// Names of commands, as the program's own help lists them: a new one cannot be forgotten here.
 fn commands(desk: &Desk, command: &[&str]) -> Vec<Vec<String>> {
     let help = text(&desk.expect(0, &[command, &["--help"]].concat()).stdout);
@@ -72,11 +75,11 @@ impl Stage {
     /// Command lines by command, in the order in which they make sense: `exec` makes the versions that others show.
     fn invocations(&self) -> Vec<Vec<String>> {
         let small = ["--no-render", "--set", "solver.cells_across=8", "--set", "time.duration_s=0.1", "--set", "scene.up=\"+z\""];
-        let (words, out) = (format!("jump 10 cm {HOSTILE}"), format!("out{HOSTILE}"));
+        let (words, out) = (WORDS, format!("out{HOSTILE}"));
         let (picture, setting, splat) = (format!("picture{HOSTILE}.png"), format!("{HOSTILE}=1"), format!("copy{HOSTILE}.splat"));
         let (scene, spec, h) = (self.scene.as_str(), self.spec.as_str(), HOSTILE);
         let rows: Vec<Vec<&str>> = vec![
-            [&["exec", scene, "-p", &words, "-p", "heavier", "-p", h, "--out", &out], &small[..]].concat(),
+            [&["exec", scene, "-p", words, "-p", "heavier", "-p", h, "--out", &out], &small[..]].concat(),
             vec!["exec", "--continue", "-p", "jump 10 cm", "--set", &setting],
             vec!["exec", self.bad_spec.as_str(), "-p", "softer"],
             vec!["exec", self.damaged.as_str(), "-p", "softer"],
@@ -87,7 +90,7 @@ impl Stage {
             vec!["diff", "v1", "v2"],
             vec!["diff", spec, self.bad_spec.as_str()],
             vec!["diff", spec, scene],
-            vec!["plan", spec, "-p", &words],
+            vec!["plan", spec, "-p", words],
             vec!["plan", "v1", "--set", &setting],
             vec!["undo", "--out", &out, "--no-render"],
             vec!["redo", "--out", &out, "--no-render"],
@@ -167,6 +170,7 @@ fn no_command_prints_an_escape() {
             }
         }
     }
+    assert!(text(&stage.desk.expect(0, &["log", "--session", "s1"]).stdout).contains("jump 10 cm \\u{1b}\\u{7}\\u{9b}"), "the store keeps the words");
     // What no command takes, some of it no text.
     for command in &commands {
         for last in [format!("--no-such{HOSTILE}").into_bytes(), b"--\xff\x1b".to_vec()] {

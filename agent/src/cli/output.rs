@@ -20,12 +20,17 @@ pub fn json(value: &impl Serialize) -> Result<(), Failure> {
 
 /// Writes one JSON object on one line.
 pub fn json_line(value: &impl Serialize) -> Result<(), Failure> {
-    write_line(&sanitise::json(&serde_json::to_string(value).map_err(Failure::other)?))
+    write_line(&sanitise::json(&serde_json::to_string(value).map_err(no_json)?))
 }
 
 /// Writes one JSON object over several lines.
 pub fn json_indented(value: &impl Serialize) -> Result<(), Failure> {
-    write_line(&sanitise::json(&serde_json::to_string_pretty(value).map_err(Failure::other)?))
+    write_line(&sanitise::json(&serde_json::to_string_pretty(value).map_err(no_json)?))
+}
+
+/// JSON is UTF-8, and names of files need not be.
+fn no_json(error: serde_json::Error) -> Failure {
+    Failure::other(format!("the result cannot be written as JSON: {error}; use names of files in UTF-8, or leave --json out"))
 }
 
 fn write_line(text: &str) -> Result<(), Failure> {

@@ -179,6 +179,7 @@ impl App {
 
     /// Takes pasted text, and reports how many bytes of it were lost.
     pub fn paste(&mut self, text: &str, lost: usize) {
+        self.interrupted = false;
         self.composer.paste(text);
         if lost > 0 {
             let said = format!("the pasted text was too long: {lost} bytes at its end were dropped; Ctrl+C clears the line");
