@@ -95,7 +95,9 @@ impl Engine {
     /// What a spec's scene looks like before anything moves. Needs no device.
     pub fn facts(&mut self, spec: &Spec, base: &Path, options: &RunOptions) -> Result<Facts, EngineError> {
         let (_, prepared) = still::scene(&mut self.memory, &self.store, spec, base)?;
-        let resolved = world::resolve(spec, &prepared.value, false, options.size, options.camera);
+        // The cell of a draft: what full quality alone cannot hold is refused when it is asked for.
+        let resolved = world::resolve(spec, &prepared.value, true, options.size, options.camera);
+        world::check_scale(spec, &prepared.value, &resolved)?;
         Ok(prepared.value.facts(spec, resolved.camera))
     }
 
@@ -106,6 +108,7 @@ impl Engine {
         let tier = self.device()?.tier;
         let draft = options.quality.map_or(tier == Tier::Cpu, |q| q == Quality::Draft);
         let resolved = world::resolve(spec, &prepared.value, draft, options.size, options.camera);
+        world::check_scale(spec, &prepared.value, &resolved)?;
         let keys = keys::still(spec, scene_key, &resolved);
         let gpu = self.device()?;
         let prestress = keys::prestress(spec, &keys, &resolved, gpu);

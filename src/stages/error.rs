@@ -6,6 +6,7 @@ use crate::scene::SceneError;
 use crate::solver::SolverError;
 use crate::spec::SpecError;
 use crate::store::StoreError;
+use crate::world::ScaleError;
 
 /// Anything that ends a run without a result.
 #[derive(Debug, thiserror::Error)]
@@ -48,6 +49,9 @@ pub enum EngineError {
         /// What the spec says.
         recorded: String,
     },
+    /// The scene is too small or too large to be simulated in metres.
+    #[error(transparent)]
+    Scale(#[from] ScaleError),
     /// No device, or the device failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),

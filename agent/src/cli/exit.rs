@@ -158,7 +158,7 @@ impl From<phystalk::stages::EngineError> for Failure {
             E::Spec(error) => error.into(),
             E::Gpu(error) => error.into(),
             E::Store(error) => error.into(),
-            E::Unstable(_) | E::TooLarge { .. } => Failure::new(Kind::Unstable, error),
+            E::Unstable(_) | E::TooLarge { .. } | E::Scale(_) => Failure::new(Kind::Unstable, error),
             E::Proxy { .. } | E::Empty { .. } | E::SceneChanged { .. } => Failure::other(error),
         }
     }
