@@ -78,6 +78,8 @@ const SORT_BLOCKS_EVERY: u32 = 32;
 const POUR_EVERY: u32 = 4;
 /// Particle-substeps of one submit: about 0.1 s on two CPU cores, so that a stop is heard.
 const CPU_BATCH: u32 = 400_000;
+/// Substeps of one submit at most: what is recorded takes memory, however few the particles are.
+const CPU_BATCH_MOST: u32 = 1024;
 /// Substeps of one submit on a GPU, the first of a segment and the longest: while little is recorded the device waits.
 const GPU_BATCH: (u32, u32) = (4, 64);
 
@@ -419,7 +421,7 @@ impl Solver {
         let bound = self.bind_both()?;
         self.start_segment();
         let (mut batch, longest) = match self.gpu.tier {
-            Tier::Cpu => [(CPU_BATCH / self.params.count).max(1); 2].into(),
+            Tier::Cpu => [(CPU_BATCH / self.params.count).clamp(1, CPU_BATCH_MOST); 2].into(),
             Tier::Gpu => GPU_BATCH,
         };
         let mut earlier: Option<wgpu::SubmissionIndex> = None;

@@ -6,6 +6,7 @@ use crate::scene::SceneError;
 use crate::solver::SolverError;
 use crate::spec::SpecError;
 use crate::store::StoreError;
+use crate::threads::ThreadError;
 use crate::world::ScaleError;
 
 /// Anything that ends a run without a result.
@@ -66,6 +67,9 @@ pub enum EngineError {
         /// Until when it moved; 0 where nothing did.
         time_s: f64,
     },
+    /// A thread could not be started, or its work panicked.
+    #[error(transparent)]
+    Thread(#[from] ThreadError),
     /// The store failed.
     #[error(transparent)]
     Store(#[from] StoreError),
