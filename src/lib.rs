@@ -14,6 +14,7 @@ pub mod solver;
 pub mod spec;
 pub mod stages;
 pub mod store;
+pub mod threads;
 pub mod world;
 
 pub use sink::{Discard, Frame, Progress, Sink, Stop};

@@ -12,5 +12,6 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     cli::environment::prepare();
     cli::crash::install();
+    phystalk::threads::start_pool();
     cli::main()
 }

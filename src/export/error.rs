@@ -32,6 +32,9 @@ pub enum ExportError {
         /// What it said.
         reason: String,
     },
+    /// A thread could not be started, or its work panicked.
+    #[error(transparent)]
+    Thread(#[from] crate::threads::ThreadError),
     /// A frame came in another size than those before it.
     #[error("{}: a frame of {}x{} pixels cannot follow frames of {}x{}", path.display(), got[0], got[1], expected[0], expected[1])]
     Size {

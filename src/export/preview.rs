@@ -5,6 +5,7 @@ use super::raster::{check, fitted, shrunk};
 use super::vp8;
 use super::{ExportError, Raster};
 use crate::Frame;
+use crate::threads::{ThreadError, caught, detach};
 use std::collections::VecDeque;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -29,12 +30,18 @@ pub struct Preview {
     frame_ms: u32,
     size: Option<[u32; 2]>,
     /// The last frame that was added, once another thread has shrunk it.
-    shown: Option<Arc<OnceLock<Raster>>>,
+    shown: Option<Arc<OnceLock<Shrunk>>>,
     /// What other threads make of the frames, in order.
-    coming: VecDeque<Receiver<Option<Patch>>>,
+    coming: VecDeque<Receiver<Result<Option<Patch>, ThreadError>>>,
     /// The picture not yet written, since its duration is known only when the next one comes.
     waiting: Option<(Patch, u32)>,
 }
+
+/// A frame as the preview shows it; an error where making it panicked, so that nobody waits for it.
+type Shrunk = Result<Raster, ThreadError>;
+
+/// What the threads of this module do, for the error of one that panicked.
+const WORK: &str = "compressing the preview";
 
 /// A changed rectangle, encoded.
 #[derive(Debug)]
@@ -69,15 +76,20 @@ impl Preview {
             self.take()?;
         }
         let (sender, receiver) = channel();
-        let (now, size, rgba8) = (Arc::<OnceLock<Raster>>::default(), frame.size, frame.rgba8.clone());
+        let (now, size, rgba8) = (Arc::<OnceLock<Shrunk>>::default(), frame.size, frame.rgba8.clone());
         let before = self.shown.replace(now.clone());
         self.coming.push_back(receiver);
         // Threads take these up in order, so the frame before is done or being shrunk when it is waited for.
-        rayon::spawn_fifo(move || {
-            let now = now.get_or_init(|| shrunk(size, &rgba8, fitted(size, WIDTH)));
+        detach(move || {
+            let now = now.get_or_init(|| caught(WORK, || shrunk(size, &rgba8, fitted(size, WIDTH))));
             drop(rgba8);
+            let made = || {
+                let before = before.as_ref().map(|before| before.wait().as_ref()).transpose();
+                let (before, now) = (before.map_err(ThreadError::clone)?, now.as_ref().map_err(ThreadError::clone)?);
+                Ok(patch(before, now))
+            };
             // The receiver is gone only when the preview was given up.
-            let _ = sender.send(patch(before.as_ref().map(|before| before.wait()), now));
+            let _ = sender.send(caught(WORK, made).and_then(|made| made));
         });
         Ok(())
     }
@@ -101,8 +113,7 @@ impl Preview {
 
     /// Waits for the oldest frame that other threads work on.
     fn take(&mut self) -> Result<(), ExportError> {
-        // A thread that gave nothing has panicked, which has ended the process.
-        let patch = self.coming.pop_front().and_then(|coming| coming.recv().ok()).flatten();
+        let patch = self.coming.pop_front().and_then(|coming| coming.recv().ok()).transpose()?.flatten();
         match (patch, &mut self.waiting) {
             (Some(patch), _) => {
                 self.flush()?;

@@ -113,7 +113,8 @@ fn choose_grid(gaussians: &Gaussians, visible: &[usize], floor_m: f32, spacing_m
             return Ok(Grid { low, voxel_m, size: size.as_uvec3() });
         }
         voxel_m *= (voxels / MOST_VOXELS).cbrt().max(1.05) as f32;
-        if voxel_m > COARSEST * spacing_m {
+        // Also where the spacing is 0 or no number.
+        if !(voxel_m > 0.0 && voxel_m <= COARSEST * spacing_m) {
             return Err(ProxyError::TooSparse { extent_m: (high - low).max_element(), spacing_m });
         }
     }

@@ -65,6 +65,17 @@ pub enum SceneError {
         /// What the file probably is, and what to do.
         advice: &'static str,
     },
+    /// Opening the file takes more memory than the system gives.
+    #[error(
+        "not enough memory to open {file}: its Gaussians need {mib} MiB; close other programs, raise the memory limit (`ulimit -v`), or reduce the \
+         scene: fewer Gaussians or fewer spherical harmonics"
+    )]
+    Memory {
+        /// The name of the file.
+        file: String,
+        /// What was asked for.
+        mib: u64,
+    },
     /// No Gaussians, or none that are usable.
     #[error("{file} holds no usable Gaussians: {why}; choose another file")]
     Empty {

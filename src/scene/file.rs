@@ -1,11 +1,11 @@
 //! From a file to Gaussians and back.
 
 use super::error::{CONVERT, COPY_AGAIN};
-use super::{Gaussians, SceneError, UpGuess, ply, splat, up};
+use super::source::{Sample, Source};
+use super::{Gaussians, SceneError, UpGuess, memory, ply, splat, up};
 use crate::store::write_atomic;
 use serde::Serialize;
 use std::path::Path;
-use std::{fs, io};
 
 /// The formats that are read and written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -41,31 +41,24 @@ impl Loaded {
     }
 }
 
-/// Reads a scene. The format is told by content.
+/// Reads a scene. The format is told by content, from a bounded part of the file: what is no scene is never read whole.
 pub fn read(path: &Path) -> Result<Loaded, SceneError> {
-    let name = path.display().to_string();
-    let failed = |reason: String, advice: &'static str| SceneError::Read { file: name.clone(), reason, advice };
-    let explain = |error: io::Error| {
-        let advice = match error.kind() {
-            io::ErrorKind::NotFound => "check the path and the folder you are in",
-            io::ErrorKind::PermissionDenied => "make it readable to you",
-            _ => "check the disk it is on",
-        };
-        failed(error.to_string(), advice)
-    };
-    let meta = fs::metadata(path).map_err(explain)?;
-    if meta.is_dir() {
-        return Err(failed("it is a folder".to_owned(), "name a .ply or .splat file in it"));
-    }
-    if !meta.is_file() {
-        return Err(failed("it is not a regular file".to_owned(), "name a .ply or .splat file on disk"));
-    }
-    parse(&fs::read(path).map_err(explain)?, &name)
+    let mut source = Source::open(path)?;
+    recognise(&source.sample()?, source.name())?;
+    let name = source.name().to_owned();
+    parse(&source.read()?, &name)
+}
+
+/// BLAKE3 of a scene's file, hexadecimal; an error where the file is no scene.
+pub fn digest(path: &Path) -> Result<String, SceneError> {
+    let mut source = Source::open(path)?;
+    recognise(&source.sample()?, source.name())?;
+    source.digest()
 }
 
 /// Reads a scene from a file's bytes; `name` is for messages.
 pub fn parse(bytes: &[u8], name: &str) -> Result<Loaded, SceneError> {
-    let format = recognise(bytes, name)?;
+    let format = recognise(&Sample::of(bytes), name)?;
     let (gaussians, comments) = match format {
         Format::Ply => ply::decode(bytes, name)?,
         Format::Splat => (splat::decode(bytes, name)?, Vec::new()),
@@ -78,7 +71,8 @@ pub fn parse(bytes: &[u8], name: &str) -> Result<Loaded, SceneError> {
 }
 
 /// Tells the format by content; the extension only where content cannot say.
-fn recognise(bytes: &[u8], name: &str) -> Result<Format, SceneError> {
+fn recognise(sample: &Sample, name: &str) -> Result<Format, SceneError> {
+    let bytes = sample.front.as_slice();
     let unsupported = |found: &str| Err(SceneError::Unsupported { file: name.to_owned(), found: found.to_owned(), advice: CONVERT });
     let not_a_scene = |found: &str| Err(SceneError::NotAScene { file: name.to_owned(), found: found.to_owned() });
     match bytes {
@@ -99,12 +93,12 @@ fn recognise(bytes: &[u8], name: &str) -> Result<Format, SceneError> {
         };
     }
     let named_splat = Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("splat"));
-    let whole = bytes.len().is_multiple_of(splat::RECORD);
-    if splat::plausible(bytes) && (whole || named_splat) {
+    let whole = sample.length.is_multiple_of(splat::RECORD as u64);
+    if if named_splat { splat::is_credible(&sample.records) } else { whole && splat::is_evident(&sample.records) } {
         return Ok(Format::Splat);
     }
     if named_splat {
-        return not_a_scene("most of its records have negative or absurd scales or positions");
+        return not_a_scene("most of its records are empty, or have negative or absurd scales or positions");
     }
     if name.to_ascii_lowercase().ends_with(".ply") {
         return Err(SceneError::Damaged {
@@ -146,7 +140,7 @@ fn keep_usable(mut g: Gaussians, name: &str) -> Result<(Gaussians, Vec<u32>, Vec
         let all = numbers.chain(g.sh[i * width..(i + 1) * width].iter().copied());
         all.fold(0.0_f32, |most, x| if x.is_finite() { most.max(x.abs()) } else { f32::INFINITY })
     };
-    let (mut keep, mut not_finite, mut absurd) = (Vec::with_capacity(g.len()), 0, 0);
+    let (mut keep, mut not_finite, mut absurd) = (memory::reserved(g.len(), name)?, 0, 0);
     for i in 0..g.len() {
         match largest(i) {
             f32::INFINITY => not_finite += 1,
@@ -160,7 +154,7 @@ fn keep_usable(mut g: Gaussians, name: &str) -> Result<(Gaussians, Vec<u32>, Vec
         return Err(SceneError::Empty { file: name.to_owned(), why });
     }
     if keep.len() < all {
-        g = g.subset(&keep);
+        g.retain(&keep);
     }
     let negative = g.scale.iter().filter(|s| s.min_element() < 0.0).count();
     for scale in &mut g.scale {

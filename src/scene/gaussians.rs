@@ -1,6 +1,6 @@
 //! The Gaussians of a scene, one array for each property.
 
-use super::SceneFrame;
+use super::{SceneError, SceneFrame, memory};
 use glam::{Mat3, Quat, Vec3};
 
 /// Gaussians in one frame: the file's after reading, the world's after [`Gaussians::to_world`].
@@ -22,6 +22,38 @@ pub struct Gaussians {
 }
 
 impl Gaussians {
+    /// So many of no size and no opacity, for the file of a name to fill. An error where opening that file takes more memory
+    /// than there is.
+    pub(super) fn zeros(count: usize, sh_degree: u32, file: &str) -> Result<Gaussians, SceneError> {
+        let coefficients = (sh_degree as usize + 1).pow(2);
+        memory::probe(count as u64, coefficients as u64, file)?;
+        Ok(Gaussians {
+            mean: memory::filled(count, Vec3::ZERO, file)?,
+            scale: memory::filled(count, Vec3::ZERO, file)?,
+            rotation: memory::filled(count, [0.0; 4], file)?,
+            opacity: memory::filled(count, 0.0, file)?,
+            sh_degree,
+            sh: memory::filled(count * coefficients * 3, 0.0, file)?,
+        })
+    }
+
+    /// Keeps those of ascending indices, in place.
+    pub(super) fn retain(&mut self, indices: &[u32]) {
+        fn keep<T: Copy>(list: &mut Vec<T>, indices: &[u32], width: usize) {
+            for (to, &from) in indices.iter().enumerate() {
+                let from = from as usize * width;
+                list.copy_within(from..from + width, to * width);
+            }
+            list.truncate(indices.len() * width);
+        }
+        let floats = self.sh_coefficients() * 3;
+        keep(&mut self.mean, indices, 1);
+        keep(&mut self.scale, indices, 1);
+        keep(&mut self.rotation, indices, 1);
+        keep(&mut self.opacity, indices, 1);
+        keep(&mut self.sh, indices, floats);
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.mean.len()

@@ -25,14 +25,7 @@ pub fn decode(bytes: &[u8], name: &str) -> Result<(Gaussians, Vec<String>), Scen
     let columns = Columns::find(vertex, name)?;
     let count = rows.len() / vertex.stride;
     let coefficients = 1 + columns.rest.len() / 3;
-    let mut g = Gaussians {
-        mean: vec![Vec3::ZERO; count],
-        scale: vec![Vec3::ZERO; count],
-        rotation: vec![[0.0; 4]; count],
-        opacity: vec![0.0; count],
-        sh_degree: coefficients.isqrt() as u32 - 1,
-        sh: vec![0.0; count * coefficients * 3],
-    };
+    let mut g = Gaussians::zeros(count, coefficients.isqrt() as u32 - 1, name)?;
     (rows.par_chunks_exact(vertex.stride), &mut g.mean, &mut g.scale, &mut g.rotation, &mut g.opacity, g.sh.par_chunks_exact_mut(coefficients * 3))
         .into_par_iter()
         .for_each(|(row, mean, scale, rotation, opacity, sh)| {

@@ -10,24 +10,36 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 /// Bytes of one Gaussian.
-pub const RECORD: usize = 32;
+pub(super) use super::source::RECORD;
 
 /// Beyond this, in the file's units, nothing is a scene.
 const PLAUSIBLE: f32 = 1e12;
 
-/// Whether records look like Gaussians: of those without NaN or infinities at least half have
-/// scales that are not negative and numbers of a credible size.
-pub fn plausible(bytes: &[u8]) -> bool {
-    let step = (bytes.len() / RECORD / 1024).max(1);
-    let (mut good, mut bad) = (0, 0);
-    for record in bytes.chunks_exact(RECORD).step_by(step) {
-        let (mean, scale) = (vector(record, 0), vector(record, 12));
-        if mean.is_finite() && scale.is_finite() {
-            let credible = mean.abs().max_element() < PLAUSIBLE && scale.min_element() >= 0.0 && scale.max_element() < PLAUSIBLE;
-            *(if credible { &mut good } else { &mut bad }) += 1;
-        }
-    }
+/// Whether records of a file that is named a .splat may be Gaussians: of those without NaN or infinities at least half have
+/// scales that are not negative and numbers of a credible size, and are not empty.
+pub fn is_credible(records: &[[u8; RECORD]]) -> bool {
+    let (good, bad) = count(records, |mean, scale| scale.min_element() >= 0.0 && (mean, scale) != (Vec3::ZERO, Vec3::ZERO));
     good >= bad
+}
+
+/// Whether records can be nothing but Gaussians, whatever their file is called. The format has no magic number, so all that
+/// speaks is numbers: most records have an extent, none of them denormal as whole numbers read as floats are, and they differ.
+pub fn is_evident(records: &[[u8; RECORD]]) -> bool {
+    let number = |v: Vec3| v.to_array().into_iter().all(|x| x == 0.0 || x.is_normal());
+    let (good, bad) = count(records, |mean, scale| number(mean) && number(scale) && scale.min_element() >= 0.0 && scale.max_element() > 0.0);
+    let differ = records.len() < ALIKE || records.iter().any(|record| *record != records[0]);
+    good > bad && differ
+}
+
+/// So many records that are all the same are padding.
+const ALIKE: usize = 16;
+
+/// How many records without NaN or infinities are of a credible size and pass a test of mean and scale, and how many are not.
+fn count(records: &[[u8; RECORD]], passes: impl Fn(Vec3, Vec3) -> bool) -> (usize, usize) {
+    let numbers = records.iter().map(|record| (vector(record, 0), vector(record, 12))).filter(|(mean, scale)| mean.is_finite() && scale.is_finite());
+    let size = |v: Vec3| v.abs().max_element() < PLAUSIBLE;
+    let (good, bad): (Vec<_>, Vec<_>) = numbers.partition(|&(mean, scale)| size(mean) && size(scale) && passes(mean, scale));
+    (good.len(), bad.len())
 }
 
 /// Gaussians of a file's bytes, unchecked for NaN.
@@ -42,14 +54,7 @@ pub fn decode(bytes: &[u8], name: &str) -> Result<Gaussians, SceneError> {
             advice: COPY_AGAIN,
         });
     }
-    let mut g = Gaussians {
-        mean: vec![Vec3::ZERO; whole],
-        scale: vec![Vec3::ZERO; whole],
-        rotation: vec![[0.0; 4]; whole],
-        opacity: vec![0.0; whole],
-        sh_degree: 0,
-        sh: vec![0.0; whole * 3],
-    };
+    let mut g = Gaussians::zeros(whole, 0, name)?;
     (bytes.par_chunks_exact(RECORD), &mut g.mean, &mut g.scale, &mut g.rotation, &mut g.opacity, g.sh.par_chunks_exact_mut(3))
         .into_par_iter()
         .for_each(|(record, mean, scale, rotation, opacity, sh)| {

@@ -333,3 +333,40 @@ fn info_has_the_numbers() {
     assert_eq!((info["gaussians"].as_u64(), info["sh_degree"].as_u64(), info["format"].as_str()), (Some(100), Some(0), Some("splat")));
     assert!(info["bounds"]["low"][0].as_f64().unwrap() < -4.0 && info["up_guess"]["axis"].is_string() && info["floaters"].is_u64());
 }
+
+#[test]
+fn only_evidence_makes_a_file_without_a_name_a_splat() {
+    let scene = splat_bytes(&random_gaussians(200, 0, 1));
+    assert_eq!(parse(&scene, "a").unwrap().format, Format::Splat);
+    let counts: Vec<u8> = (0_u32..4096).flat_map(u32::to_le_bytes).collect();
+    let noise: Vec<u8> = (0_u32..4096).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+    let padded = [scene[..320].to_vec(), vec![0; 32 * 1000]].concat();
+    for (name, bytes) in
+        [("zeros", vec![0; 32 * 1000]), ("ones", vec![0x3f; 32 * 1000]), ("counts", counts), ("noise", noise), ("padded", padded.clone())]
+    {
+        let refused = parse(&bytes, name);
+        assert!(matches!(refused, Err(SceneError::NotAScene { .. })), "{name}: {refused:?}");
+    }
+    assert!(matches!(parse(&padded, "a.splat"), Err(SceneError::NotAScene { .. })));
+    assert!(matches!(parse(&vec![0; 3200], "a.splat"), Err(SceneError::NotAScene { .. })));
+}
+
+#[test]
+fn a_long_sparse_file_is_refused_by_a_part_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["sparse", "sparse.splat"] {
+        let path = folder.path().join(name);
+        // More than any machine has memory for.
+        std::fs::File::create(&path).unwrap().set_len(1 << 42).unwrap();
+        assert!(matches!(read(&path), Err(SceneError::NotAScene { .. })));
+        assert!(digest(&path).is_err());
+    }
+}
+
+#[test]
+fn gaussians_that_stay_are_the_subset_in_place() {
+    let all = random_gaussians(20, 2, 3);
+    let mut kept = all.clone();
+    kept.retain(&[0, 3, 4, 19]);
+    assert_eq!(kept, all.subset(&[0, 3, 4, 19]));
+}

@@ -78,6 +78,8 @@ const SORT_BLOCKS_EVERY: u32 = 32;
 const POUR_EVERY: u32 = 4;
 /// Particle-substeps of one submit: about 0.1 s on two CPU cores, so that a stop is heard.
 const CPU_BATCH: u32 = 400_000;
+/// Substeps of one submit at most: what is recorded takes memory, however few the particles are.
+const CPU_BATCH_MOST: u32 = 1024;
 /// Substeps of one submit on a GPU, the first of a segment and the longest: while little is recorded the device waits.
 const GPU_BATCH: (u32, u32) = (4, 64);
 
@@ -118,6 +120,9 @@ impl Solver {
         let calm = (seen.driven_m_s, seen.drift_m_s);
         let mut tries = Tries::default();
         loop {
+            if !tries.reason.is_empty() {
+                self.count_retry(&tries)?;
+            }
             let acceleration_m_s2 = self.set_surroundings();
             let pins_m_s = self.pin_speed_m_s();
             (seen.driven_m_s, seen.drift_m_s) = (seen.driven_m_s.max(pins_m_s), seen.drift_m_s.max(pins_m_s));
@@ -148,6 +153,7 @@ impl Solver {
             let high = if self.soft { seen.high } else { seen.low };
             let fits = self.fit_window(seen.low, high, margin).and_then(|()| self.make_room(seen.blocks, seen.blocks / 8));
             if let Err(error) = fits {
+                tries.reason = error.to_string();
                 // What a failed try came to may ask for more room than there is; shorter substeps may never come to it.
                 if tries.room > 1 {
                     (tries.room, tries.room_most) = (tries.room / 2, tries.room / 2);
@@ -163,6 +169,7 @@ impl Solver {
                     self.backup();
                     seen = self.look()?;
                 } else {
+                    self.count_given_up(&tries)?;
                     break;
                 }
                 continue;
@@ -179,9 +186,11 @@ impl Solver {
             // Room is no matter of the time step either, while there is any.
             if now.blocks > self.grid.as_ref().map_or(0, |g| g.capacity) {
                 self.roll_back(start, order);
+                tries.reason = format!("{} blocks of the grid are needed", now.blocks);
                 match self.make_room(now.blocks, 0) {
                     Err(error) if !self.shorten(&error, &mut tries) => {
                         if !self.give_way(now.suspects, &mut tries, report)? {
+                            self.count_given_up(&tries)?;
                             break;
                         }
                         self.backup();
@@ -194,12 +203,14 @@ impl Solver {
             let travel_m = self.params.slack as f32 * self.settings.cell_m;
             let Some(reason) = now.trip(plan.dt_s, plan.sort_every, self.settings.cell_m, travel_m) else {
                 self.seen = Some(now);
+                self.wary.given_up = 0;
                 self.report(&plan, &now, report);
                 break;
             };
             if self.is_mendable(&now, &plan, travel_m, &tries) {
                 tracing::debug!(time_s = self.time_s, dt_s = plan.dt_s, reason, ?now, "mended");
                 self.wary.trouble();
+                self.wary.given_up = 0;
                 self.mend(!now.has_sound_volumes(), report)?;
                 self.report(&plan, &now, report);
                 break;
@@ -207,6 +218,7 @@ impl Solver {
             tracing::debug!(time_s = self.time_s, dt_s = plan.dt_s, reason, before = ?seen, ?now, "rolled back");
             self.roll_back(start, order);
             report.retries += 1;
+            tries.reason.clone_from(&reason);
             // How wide the window happens to be is no part of the state: leaving it asks for room and teaches nothing, so
             // that a run from a checkpoint, which makes its own, goes on to the same bits.
             if now.window && now.nonfinite == 0 && tries.room < tries.room_most {
@@ -234,6 +246,7 @@ impl Solver {
                 }
                 WayOn::None => {
                     if !self.give_way(now.suspects, &mut tries, report)? {
+                        self.count_given_up(&tries)?;
                         break;
                     }
                     self.backup();
@@ -408,7 +421,7 @@ impl Solver {
         let bound = self.bind_both()?;
         self.start_segment();
         let (mut batch, longest) = match self.gpu.tier {
-            Tier::Cpu => [(CPU_BATCH / self.params.count).max(1); 2].into(),
+            Tier::Cpu => [(CPU_BATCH / self.params.count).clamp(1, CPU_BATCH_MOST); 2].into(),
             Tier::Gpu => GPU_BATCH,
         };
         let mut earlier: Option<wgpu::SubmissionIndex> = None;

@@ -1,5 +1,5 @@
 //! The last resort: what neither shorter substeps nor softer matter resolves loses its strain, and moves as what is around it
-//! does. A run is never given up for what a spec says.
+//! does. Where that happens again and again without a substep between, the run ends (`retry_budget.rs`).
 
 use super::constants::{J_LEAST, J_MOST};
 use super::core::Solver;

@@ -30,6 +30,7 @@ mod obstacles;
 mod prestress;
 mod record;
 mod retry;
+mod retry_budget;
 mod rigid;
 mod sph;
 mod state;
@@ -88,4 +89,4 @@ pub fn shader_text() -> String {
 }
 
 /// Raised whenever the same input gives other bits.
-pub const VERSION: u32 = 40;
+pub const VERSION: u32 = 41;

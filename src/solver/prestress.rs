@@ -8,13 +8,14 @@
 //! relaxation in time would have to wait for.
 
 use super::advance::Substep;
-use super::constants::{FIXED_BITS, SLACK_CELLS};
+use super::constants::SLACK_CELLS;
 use super::core::Solver;
 use super::grid::GridBuffers;
 use super::record::Bound;
 use super::state::{ParticleState, RIGID_TAG};
 use super::support::Support;
 use super::types::{PrestressReport, SolverError};
+use super::wary::mass_units;
 use super::watch::Control;
 use crate::Stop;
 use crate::gpu::{Readback, Recording, Tier};
@@ -224,7 +225,7 @@ impl Solver {
     /// Uploads pseudo particles, and the scales that suit their masses and their small displacements.
     fn begin<'a>(&mut self, pseudo: &[ParticleState], objects: &[u32], stop: &'a Stop) -> Result<Scene<'a>, SolverError> {
         let heaviest = pseudo.iter().map(|s| s.mass_kg).fold(0.0, f32::max);
-        self.params.mass_units = 2f32.powi(FIXED_BITS as i32 - heaviest.log2().ceil() as i32);
+        self.params.mass_units = mass_units(heaviest, 0);
         self.params.momentum_floor = heaviest * 1e-12;
         // What stands together as captured carries each other.
         self.params.layers = 1;

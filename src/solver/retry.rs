@@ -24,11 +24,13 @@ pub(super) struct Tries {
     pub calmed: bool,
     /// Failures that more room did not mend.
     pub trips: u32,
+    /// Why the last try failed; empty before the first has.
+    pub reason: String,
 }
 
 impl Default for Tries {
     fn default() -> Tries {
-        Tries { room: 1, room_most: ROOM_MOST, softenings: 0, calmed: false, trips: 0 }
+        Tries { room: 1, room_most: ROOM_MOST, softenings: 0, calmed: false, trips: 0, reason: String::new() }
     }
 }
 

@@ -366,6 +366,22 @@ pub enum SolverError {
         /// Substeps needed.
         substeps: u32,
     },
+    /// No remedy leads to a substep that holds.
+    #[error(
+        "the simulation makes no progress at {time_s:.4} s: {retries} retries in this frame with smaller substeps and softer materials, and {given_up} \
+         segments in a row given up; the last try failed because {reason}; use slower motion, softer materials, fewer solver.cells_across, or \
+         scene.metres_per_unit where the scene is not in metres (`phystalk scene info` prints its bounds)"
+    )]
+    NoProgress {
+        /// When.
+        time_s: f64,
+        /// Failed tries of the frame.
+        retries: u32,
+        /// Segments in a row in which no substep held.
+        given_up: u32,
+        /// Why the last try failed.
+        reason: String,
+    },
     /// Bytes that are no checkpoint of this solver.
     #[error("a checkpoint does not fit: {what}; delete it, and the run starts anew")]
     Checkpoint {

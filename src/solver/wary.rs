@@ -25,6 +25,10 @@ pub(super) struct Wary {
     calm: u32,
     /// Whether there was trouble in the present frame.
     troubled: u32,
+    /// Failed tries of the present frame, see `retry_budget.rs`.
+    pub retries: u32,
+    /// Segments given up since one held, see `retry_budget.rs`.
+    pub given_up: u32,
 }
 
 impl Wary {
@@ -43,16 +47,17 @@ impl Wary {
     /// A frame ended.
     pub fn frame_ends(&mut self) {
         self.calm = if self.troubled != 0 || (self.halvings, self.bits) == (0, 0) { 0 } else { self.calm + 1 };
-        self.troubled = 0;
+        (self.troubled, self.retries) = (0, 0);
         if self.calm == CALM_FRAMES {
-            *self = Wary { halvings: self.halvings.saturating_sub(1), bits: self.bits.saturating_sub(FIXED_BITS_RETREAT), ..Wary::default() };
+            *self = Wary { halvings: self.halvings.saturating_sub(1), bits: self.bits.saturating_sub(FIXED_BITS_RETREAT), calm: 0, ..*self };
         }
     }
 }
 
-/// Fixed-point units of a kilogram where the heaviest particle has so much mass.
+/// Fixed-point units of a kilogram where the heaviest particle has so much mass; a finite number whatever the mass is.
 pub(super) fn mass_units(heaviest_kg: f32, bits: u32) -> f32 {
-    2f32.powi((FIXED_BITS - bits) as i32 - heaviest_kg.log2().ceil() as i32)
+    let exponent = ((FIXED_BITS - bits) as i32).saturating_sub(heaviest_kg.log2().ceil() as i32);
+    2f32.powi(exponent.clamp(f32::MIN_EXP, f32::MAX_EXP - 1))
 }
 
 impl Solver {

@@ -18,8 +18,8 @@ pub const COLLIDERS: u32 = 126;
 pub const RIGID: u32 = 128;
 /// Length of a name.
 pub const NAME: usize = 64;
-/// Scale of a scene.
-pub const METRES_PER_UNIT: (f64, f64) = (1e-6, 1e6);
+/// Scale of a scene: from files in picometres to files in thousands of astronomical units. `world::check_scale` bounds the product.
+pub const METRES_PER_UNIT: (f64, f64) = (1e-12, 1e12);
 /// Longest simulation and latest event.
 pub const TIME_S: f64 = 600.0;
 /// Frames a second.

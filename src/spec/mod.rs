@@ -13,6 +13,7 @@ mod error;
 pub mod expect;
 pub mod expression;
 mod fields;
+pub mod file_name;
 mod gloss;
 mod later;
 pub mod limits;

@@ -62,6 +62,8 @@ pub fn name_from_file(file: &str) -> String {
     if let Some(builtin) = file.strip_prefix("builtin:") {
         return name_from_file(builtin);
     }
+    let file = super::file_name::decode(file);
+    let file = file.to_string_lossy();
     let last = file.rsplit(['/', '\\']).next().unwrap_or_default();
     let stem = last.split('.').find(|part| !part.is_empty()).unwrap_or_default();
     let tidy = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c.to_ascii_lowercase() } else { '_' };

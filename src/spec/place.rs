@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use super::error::{SpecError, SpecErrorKind};
-use super::{Spec, SpecError as Error};
+use super::{Spec, SpecError as Error, file_name};
 
 /// Scenes that are part of the program.
 const BUILTIN: &str = "builtin:";
@@ -37,25 +37,26 @@ fn absolute(file: &str, folder: &Path) -> Result<String, SpecError> {
     if file.starts_with(BUILTIN) {
         return Ok(file.to_owned());
     }
-    let joined = folder.join(file);
+    let joined = folder.join(file_name::decode(file));
     let whole = std::path::absolute(&joined).map_err(|error| not_a_path(&joined, &error.to_string()))?;
-    text(&real(&whole))
+    Ok(text(&real(&whole)))
 }
 
 /// An absolute path as it reads from `folder`; unchanged where there is no way between them.
 fn relative(file: &str, folder: &Path) -> Result<String, SpecError> {
-    if file.starts_with(BUILTIN) || !Path::new(file).is_absolute() {
+    let path = file_name::decode(file);
+    if file.starts_with(BUILTIN) || !path.is_absolute() {
         return Ok(file.to_owned());
     }
-    let target = real(Path::new(file));
+    let target = real(&path);
     let folder = real(&std::path::absolute(folder).map_err(|error| not_a_path(folder, &error.to_string()))?);
     let shared = target.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
     // Two drives share nothing.
     if !matches!(target.components().next(), Some(first) if shared > 0 && folder.components().next() == Some(first)) {
-        return text(&target);
+        return Ok(text(&target));
     }
     let up = folder.components().skip(shared).map(|_| Component::ParentDir);
-    text(&up.chain(target.components().skip(shared)).collect::<PathBuf>())
+    Ok(text(&up.chain(target.components().skip(shared)).collect::<PathBuf>()))
 }
 
 /// An absolute path without links: those of the part that exists are followed, the rest is taken as
@@ -87,9 +88,9 @@ fn tidy(path: &Path) -> PathBuf {
 }
 
 /// As text with forward slashes, which every system reads.
-fn text(path: &Path) -> Result<String, SpecError> {
-    let text = path.to_str().ok_or_else(|| not_a_path(path, "it is not UTF-8, which a spec is"))?;
-    Ok(if cfg!(windows) { text.replace('\\', "/") } else { text.to_owned() })
+fn text(path: &Path) -> String {
+    let text = file_name::encode(path);
+    if cfg!(windows) { text.replace('\\', "/") } else { text }
 }
 
 fn not_a_path(path: &Path, why: &str) -> SpecError {

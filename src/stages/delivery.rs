@@ -6,6 +6,7 @@ use super::keeper::{Item, Keeper};
 use super::segments::{Segment, SegmentMeta, SolverTotals};
 use crate::gpu::{Arrived, Gpu, Readback};
 use crate::render::{Developed, Picture};
+use crate::threads::{caught, detach};
 use crate::world::Checkpoint;
 use crate::world::measure::{Bodies, MotionFrame, Row, measure};
 use crate::{Frame, Sink, export};
@@ -161,10 +162,13 @@ impl<'a> Delivery<'a> {
         }
         self.working += 1;
         let (sender, bodies) = (self.sender.clone(), self.bodies.clone());
-        rayon::spawn(move || {
+        let work = move || {
             let measured = motion.map(|arrived| measured(&arrived, &bodies)).transpose();
             let frame = picture.map(|picture| encoded(index, time_s, &picture)).transpose();
-            let done = measured.and_then(|measured| Ok(Done { place, measured, frame: frame? }));
+            measured.and_then(|measured| Ok(Done { place, measured, frame: frame? }))
+        };
+        detach(move || {
+            let done = caught("encoding a frame", work).map_err(EngineError::from).and_then(|done| done);
             // The receiver is gone only when the run has already failed.
             let _ = sender.send(done);
         });

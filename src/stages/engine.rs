@@ -11,10 +11,10 @@ use crate::scene::Gaussians;
 use crate::skin::{Bound, Splats};
 use crate::spec::{Camera, Spec};
 use crate::store::Store;
+use crate::threads::Task;
 use crate::world::{self, Facts, Figure, Prepared, Resolved};
 use crate::{Sink, Stop};
 use std::path::Path;
-use std::thread::JoinHandle;
 
 /// Owns the device, opened on first need, the store, and what the last run prepared. One engine
 /// thread owns an engine; nothing in it is async.
@@ -24,7 +24,7 @@ pub struct Engine {
     request: DeviceRequest,
     pub(super) gpu: Option<Gpu>,
     /// The device that another thread is opening.
-    opening: Option<JoinHandle<Result<Gpu, GpuError>>>,
+    opening: Option<Task<Result<Gpu, GpuError>>>,
     pub(super) memory: Memory,
     /// The last figure and the key of what it was made of.
     pub(super) figure: Option<(String, Figure)>,
@@ -61,7 +61,7 @@ pub(super) struct Ready {
 impl Drop for Engine {
     fn drop(&mut self) {
         // A driver that is still opening when the process ends may crash.
-        let _ = self.opening.take().map(JoinHandle::join);
+        let _ = self.opening.take().map(Task::join);
     }
 }
 
@@ -75,7 +75,8 @@ impl Engine {
     pub fn open_ahead(&mut self) {
         if self.gpu.is_none() && self.opening.is_none() {
             let request = self.request.clone();
-            self.opening = Some(std::thread::spawn(move || Gpu::open(&request)));
+            // Where no thread is to be had, the device is opened when it is needed.
+            self.opening = Task::spawn("opening the device", move || Gpu::open(&request)).ok();
         }
     }
 
@@ -87,8 +88,7 @@ impl Engine {
     /// The device, opened on the first call.
     pub fn device(&mut self) -> Result<&Gpu, EngineError> {
         if self.gpu.is_none() {
-            // A panic on that thread has already ended the process through the panic hook.
-            let opened = self.opening.take().and_then(|thread| thread.join().ok());
+            let opened = self.opening.take().map(Task::join).transpose()?;
             self.gpu = Some(opened.unwrap_or_else(|| Gpu::open(&self.request))?);
         }
         self.gpu.as_ref().ok_or_else(|| EngineError::Unstable("the device was closed".to_owned()))
@@ -97,7 +97,9 @@ impl Engine {
     /// What a spec's scene looks like before anything moves. Needs no device.
     pub fn facts(&mut self, spec: &Spec, base: &Path, options: &RunOptions) -> Result<Facts, EngineError> {
         let (_, prepared) = still::scene(&mut self.memory, &self.store, spec, base)?;
-        let resolved = world::resolve(spec, &prepared.value, false, options.size, options.camera);
+        // The cell of a draft: what full quality alone cannot hold is refused when it is asked for.
+        let resolved = world::resolve(spec, &prepared.value, true, options.size, options.camera);
+        world::check_scale(spec, &prepared.value, &resolved)?;
         Ok(prepared.value.facts(spec, resolved.camera))
     }
 
@@ -108,6 +110,7 @@ impl Engine {
         let tier = self.device()?.tier;
         let draft = options.quality.map_or(tier == Tier::Cpu, |q| q == Quality::Draft);
         let resolved = world::resolve(spec, &prepared.value, draft, options.size, options.camera);
+        world::check_scale(spec, &prepared.value, &resolved)?;
         let keys = keys::still(spec, scene_key, &resolved);
         let gpu = self.device()?;
         let prestress = keys::prestress(spec, &keys, &resolved, gpu);

@@ -6,6 +6,8 @@ use crate::scene::SceneError;
 use crate::solver::SolverError;
 use crate::spec::SpecError;
 use crate::store::StoreError;
+use crate::threads::ThreadError;
+use crate::world::ScaleError;
 
 /// Anything that ends a run without a result.
 #[derive(Debug, thiserror::Error)]
@@ -48,6 +50,9 @@ pub enum EngineError {
         /// What the spec says.
         recorded: String,
     },
+    /// The scene is too small or too large to be simulated in metres.
+    #[error(transparent)]
+    Scale(#[from] ScaleError),
     /// No device, or the device failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -62,6 +67,9 @@ pub enum EngineError {
         /// Until when it moved; 0 where nothing did.
         time_s: f64,
     },
+    /// A thread could not be started, or its work panicked.
+    #[error(transparent)]
+    Thread(#[from] ThreadError),
     /// The store failed.
     #[error(transparent)]
     Store(#[from] StoreError),

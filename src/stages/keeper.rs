@@ -3,11 +3,11 @@
 use super::EngineError;
 use super::segments::{self, Segment, SegmentMeta};
 use crate::store::{BlobWriter, EntryWriter, Store, StoreError};
+use crate::threads::Task;
 use crate::world::Checkpoint;
 use std::io::Write;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::thread::JoinHandle;
 
 /// Frames that may wait for the disk before the run waits for it.
 const WAITING: usize = 16;
@@ -30,15 +30,19 @@ pub(super) enum Item {
 pub(super) struct Keeper {
     // Until it is finished.
     sender: Option<SyncSender<Item>>,
-    thread: Option<JoinHandle<Result<(), EngineError>>>,
+    thread: Writing,
 }
 
 impl Keeper {
     /// Pictures go into `album`, where there is one.
-    pub fn new(store: &Store, album: Option<Album>) -> Keeper {
-        let (sender, incoming) = sync_channel(WAITING);
+    pub fn new(store: &Store, album: Option<Album>) -> Result<Keeper, EngineError> {
         let store = store.clone();
-        Keeper { sender: Some(sender), thread: Some(std::thread::spawn(move || write(&store, album, &incoming))) }
+        Keeper::with(move |incoming| write(&store, album, &incoming))
+    }
+
+    fn with(write: impl FnOnce(Receiver<Item>) -> Result<(), EngineError> + Send + 'static) -> Result<Keeper, EngineError> {
+        let (sender, incoming) = sync_channel(WAITING);
+        Ok(Keeper { sender: Some(sender), thread: Some(Task::spawn(WORK, move || write(incoming))?) })
     }
 
     /// Hands something over.
@@ -66,17 +70,20 @@ impl Drop for Keeper {
     }
 }
 
-/// A segment on its way to the disk.
-type Ending = Option<JoinHandle<Result<(), EngineError>>>;
+/// Something on its way to the disk.
+type Writing = Option<Task<Result<(), EngineError>>>;
+
+/// What the threads of this module do, for the error of one that panicked.
+const WORK: &str = "writing to the store";
 
 fn write(store: &Store, album: Option<Album>, incoming: &Receiver<Item>) -> Result<(), EngineError> {
-    let mut ending: Ending = None;
+    let mut ending: Writing = None;
     let written = write_all(store, album, incoming, &mut ending);
     written.and(ended(ending))
 }
 
 /// Writes what comes. A segment that ended goes to the disk while the next one is written.
-fn write_all(store: &Store, mut album: Option<Album>, incoming: &Receiver<Item>, ending: &mut Ending) -> Result<(), EngineError> {
+fn write_all(store: &Store, mut album: Option<Album>, incoming: &Receiver<Item>, ending: &mut Writing) -> Result<(), EngineError> {
     // The motion of the segment that has not ended.
     let mut open: Option<(EntryWriter, BlobWriter)> = None;
     for item in incoming {
@@ -96,7 +103,7 @@ fn write_all(store: &Store, mut album: Option<Album>, incoming: &Receiver<Item>,
             Item::End(segment, meta, state) => {
                 ended(ending.take())?;
                 let (store, begun) = (store.clone(), open.take());
-                *ending = Some(std::thread::spawn(move || segments::keep(&store, &segment, begun, &meta, &state.bytes()?)));
+                *ending = Some(Task::spawn(WORK, move || segments::keep(&store, &segment, begun, &meta, &state.bytes()?))?);
             }
             Item::Picture(png) => album.as_mut().map_or(Ok(()), |album| album.add(&png))?,
             Item::Whole => album.take().map_or(Ok(()), Album::finish)?,
@@ -106,9 +113,8 @@ fn write_all(store: &Store, mut album: Option<Album>, incoming: &Receiver<Item>,
 }
 
 /// Waits for a thread that writes.
-fn ended(thread: Ending) -> Result<(), EngineError> {
-    // A panic on that thread has already ended the process through the panic hook.
-    thread.map_or(Ok(()), |thread| thread.join().unwrap_or(Ok(())))
+fn ended(thread: Writing) -> Result<(), EngineError> {
+    thread.map_or(Ok(()), |thread| thread.join()?)
 }
 
 fn append(store: &Store, blob: &mut BlobWriter, bytes: &[u8]) -> Result<(), EngineError> {
@@ -141,5 +147,18 @@ impl Album {
         self.blob.finish()?;
         self.entry.finish(serde_json::json!({ "ends": self.ends, "fps": self.fps }))?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_writer_that_panics_is_an_error_of_the_run() {
+        let mut keeper = Keeper::with(|incoming| incoming.recv().map_or(Ok(()), |_| panic!("a bad entry"))).unwrap();
+        let given = (0..100).find_map(|_| keeper.keep(Item::Whole).err());
+        let error = given.or_else(|| keeper.finish().err()).unwrap();
+        assert!(matches!(&error, EngineError::Thread(_)) && error.to_string().contains("a bad entry"), "{error}");
     }
 }

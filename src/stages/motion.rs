@@ -83,7 +83,7 @@ impl<'a> Motion<'a> {
         let album = figure.is_some().then(|| Album::begin(&self.store, &self.ready.picture, self.spec.time.fps)).transpose()?;
         self.played.figure = figure;
         let gpu = self.gpu.clone();
-        let mut delivery = Delivery::new(&gpu, self.bodies.clone(), Keeper::new(&self.store, album));
+        let mut delivery = Delivery::new(&gpu, self.bodies.clone(), Keeper::new(&self.store, album)?);
         for (number, segment) in self.ready.segments.iter().enumerate() {
             let kept = segments::get(&self.store, segment)?;
             let motion = match (&kept, &self.played.figure) {

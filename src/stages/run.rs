@@ -6,6 +6,7 @@ use super::{Action, EngineError, Metrics, Plan, RunOptions, StageName, pack, sum
 use crate::gpu::Gpu;
 use crate::spec::{Auto, Spec};
 use crate::store::{BlobReader, Entry, Store};
+use crate::threads::caught;
 use crate::world::bodies::{Matter, matter};
 use crate::world::{Figure, asked_in_vain};
 use crate::{Frame, Sink, Stop, render, skin, solver};
@@ -43,7 +44,9 @@ pub(super) fn run(
     let gpu = engine.device()?.clone();
     // The driver compiles while the scene is made solid.
     let (solids, bound) = std::thread::scope(|scope| -> Result<_, EngineError> {
-        scope.spawn(|| prepare(&plan, spec, ready.resolved.size, &gpu));
+        // Without a thread for it, the passes are compiled when they are asked for.
+        let ahead = || caught("compiling shaders", || prepare(&plan, spec, ready.resolved.size, &gpu));
+        let _ = std::thread::Builder::new().spawn_scoped(scope, ahead);
         let clock = Instant::now();
         let solids = engine.solids(spec, &ready)?;
         seconds.insert(StageName::Proxy, clock.elapsed().as_secs_f64());

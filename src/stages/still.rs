@@ -6,7 +6,7 @@ use super::{Action, EngineError, pack};
 use crate::proxy::{self, ProxyRequest, Solid, Stance};
 use crate::scene::{self, Format, Gaussians, Loaded, SceneFrame};
 use crate::skin::{self, Bound};
-use crate::spec::{Auto, Axis, Select, Spec};
+use crate::spec::{Auto, Axis, Select, Spec, file_name};
 use crate::store::Store;
 use crate::world::{Prepared, Resolved};
 use glam::Vec3;
@@ -65,7 +65,7 @@ fn load(memory: &mut Memory, spec: &Spec, base: &Path) -> Result<Arc<Loaded>, En
         memory.file = Some((tag, loaded.clone()));
         return Ok(loaded);
     }
-    let path = base.join(&spec.scene.file);
+    let path = base.join(file_name::decode(&spec.scene.file));
     let stamp = std::fs::metadata(&path).ok().map(|m| format!("{} {} {:?}", path.display(), m.len(), m.modified().ok()));
     if let (Some((known, loaded)), Some(stamp)) = (&memory.file, &stamp)
         && known == stamp

@@ -24,9 +24,13 @@ pub fn restore_terminal() {
     }
 }
 
-/// Makes every panic, on whatever thread, end the process with exit code 70.
+/// Makes every panic end the process with exit code 70, on whatever thread, but for those that become errors of a run.
 pub fn install() {
     std::panic::set_hook(Box::new(|info| {
+        if phystalk::threads::is_caught() {
+            tracing::error!("{}", sentence(info));
+            return;
+        }
         restore_terminal();
         super::output::note(sentence(info));
         std::process::exit(i32::from(Kind::Bug.code()));

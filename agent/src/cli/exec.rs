@@ -12,6 +12,7 @@ use phystalk::spec::Edit;
 #[derive(Args, Debug)]
 pub struct Arguments {
     /// Splat file (.ply, .splat), spec (.toml) or builtin:demo; not needed with --continue
+    #[arg(value_parser = setup::file_argument())]
     scene: Option<String>,
     /// What should happen; one turn each
     #[arg(short, long = "prompt", value_name = "TEXT", required_unless_present = "set", allow_hyphen_values = true)]

@@ -125,7 +125,11 @@ impl From<phystalk::gpu::GpuError> for Failure {
 
 impl From<phystalk::scene::SceneError> for Failure {
     fn from(error: phystalk::scene::SceneError) -> Failure {
-        Failure::other(error)
+        let kind = match error {
+            phystalk::scene::SceneError::Memory { .. } => Kind::Device,
+            _ => Kind::Other,
+        };
+        Failure::new(kind, error)
     }
 }
 
@@ -160,8 +164,8 @@ impl From<phystalk::stages::EngineError> for Failure {
             E::Spec(error) => error.into(),
             E::Gpu(error) => error.into(),
             E::Store(error) => error.into(),
-            E::Unstable(_) | E::TooLarge { .. } => Failure::new(Kind::Unstable, error),
-            E::Proxy { .. } | E::Empty { .. } | E::SceneChanged { .. } => Failure::other(error),
+            E::Unstable(_) | E::TooLarge { .. } | E::Scale(_) => Failure::new(Kind::Unstable, error),
+            E::Thread(_) | E::Proxy { .. } | E::Empty { .. } | E::SceneChanged { .. } => Failure::other(error),
         }
     }
 }

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug)]
 pub struct Arguments {
     /// A spec (.toml, .json) or a version, as v3
+    #[arg(value_parser = setup::file_argument())]
     what: String,
     /// Which frames to compare, as 0,25,50
     #[arg(long, value_name = "N,N…", value_delimiter = ',', required = true)]

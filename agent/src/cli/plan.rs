@@ -14,6 +14,7 @@ use std::path::Path;
 #[derive(Args, Debug)]
 pub struct Arguments {
     /// A spec (.toml, .json), a scene (.ply, .splat, builtin:demo) or a version, as v3 [default: the newest version]
+    #[arg(value_parser = setup::file_argument())]
     what: Option<String>,
     /// What should happen: says what it would change, and neither runs nor keeps it; several follow one another
     #[arg(short, long = "prompt", value_name = "TEXT", allow_hyphen_values = true)]

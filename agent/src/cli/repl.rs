@@ -12,6 +12,7 @@ use std::path::Path;
 #[derive(Args, Debug)]
 pub struct Arguments {
     /// Splat file (.ply, .splat), spec (.toml) or builtin:demo to talk to
+    #[arg(value_parser = setup::file_argument())]
     scene: Option<String>,
     /// The first thing to say
     prompt: Option<String>,
@@ -34,7 +35,8 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
         return Err(Failure::other(format!("{scene} is neither a file nor a command{hint}")));
     }
     if let Some(scene) = scene.filter(|s| *s != phystalk::stages::BUILTIN_DEMO) {
-        std::fs::metadata(scene).map_err(|e| Failure::file("read", Path::new(scene), &e))?;
+        let path = phystalk::spec::file_name::decode(scene);
+        std::fs::metadata(&path).map_err(|e| Failure::file("read", &path, &e))?;
     }
     if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
         return Err(Failure::new(

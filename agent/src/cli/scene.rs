@@ -70,7 +70,9 @@ pub fn convert(arguments: &ConvertArguments, flags: &Flags) -> Result<(), Failur
     let loaded = scene::read(&arguments.input)?;
     let lost = scene::write(&arguments.output, &loaded.gaussians)?;
     if flags.json {
-        return output::json(&json!({ "gaussians": loaded.gaussians.len(), "output": arguments.output, "lost": lost, "warnings": loaded.warnings }));
+        return output::json(
+            &json!({ "gaussians": loaded.gaussians.len(), "output": phystalk::spec::file_name::encode(&arguments.output), "lost": lost, "warnings": loaded.warnings }),
+        );
     }
     loaded.warnings.iter().filter(|_| !flags.quiet).for_each(|w| output::note(format!("warning: {w}")));
     lost.iter().filter(|_| !flags.quiet).for_each(|l| output::note(format!("lost: {l}")));

@@ -6,7 +6,7 @@ use super::{output, stores};
 use crate::conversation::Conversation;
 use crate::conversation::output_folder::{self, OutputFolder, Owner};
 use crate::history::{Session, Sessions};
-use phystalk::spec::{Edit, Spec};
+use phystalk::spec::{Edit, Spec, file_name};
 use phystalk::stages::Engine;
 use phystalk::store::Store;
 use std::path::{Path, PathBuf};
@@ -37,18 +37,25 @@ pub fn read(path: &Path) -> Result<Spec, Failure> {
     Ok(spec?)
 }
 
+/// For clap: an argument that names a file. One that is not UTF-8 becomes the text that a spec has for it.
+pub fn file_argument() -> impl clap::builder::TypedValueParser<Value = String> {
+    use clap::builder::TypedValueParser;
+    clap::builder::OsStringValueParser::new().map(|argument| file_name::encode(Path::new(&argument)))
+}
+
 /// The spec that a scene starts with: defaults, one elastic object; a `.toml` or `.json` is read as
 /// a spec, and `builtin:demo` is the built-in scene.
 pub fn spec_of(scene: &str, flags: &Flags) -> Result<Spec, Failure> {
-    let path = Path::new(scene);
+    let path = &file_name::decode(scene);
     let spec = if scene == "builtin:demo" {
         phystalk::scene::demo::spec()
     } else if is_spec(scene) {
         read(path)?
     } else {
         let path = std::path::absolute(path).map_err(|e| Failure::file("find", path, &e))?;
-        let mut spec = Spec::of_scene(&path.to_string_lossy());
-        spec.scene.blake3 = digest(&path);
+        let mut spec = Spec::of_scene(&file_name::encode(&path));
+        // Of what cannot be read, reading the scene tells why.
+        spec.scene.blake3 = phystalk::scene::digest(&path).ok();
         spec
     };
     adjusted(spec, flags)
@@ -57,14 +64,6 @@ pub fn spec_of(scene: &str, flags: &Flags) -> Result<Spec, Failure> {
 /// Whether an argument names a spec rather than a version or a splat file.
 pub fn is_spec(argument: &str) -> bool {
     Path::new(argument).extension().is_some_and(|e| e == "toml" || e == "json")
-}
-
-/// BLAKE3 of a file; none where it cannot be read, which reading the scene will explain.
-fn digest(path: &Path) -> Option<String> {
-    let file = std::fs::File::open(path).ok()?;
-    let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(file).ok()?;
-    Some(hasher.finalize().to_hex().to_string())
 }
 
 /// A conversation about a scene: goes on with a session where the flags say so, else starts one

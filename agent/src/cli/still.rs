@@ -89,7 +89,9 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
         write(image, path, kind)?;
     }
     if flags.json {
-        return output::json(&json!({ "pictures": outputs, "gaussians": loaded.gaussians.len(), "device": engine.device()?.name() }));
+        return output::json(
+            &json!({ "pictures": outputs.iter().map(|path| phystalk::spec::file_name::encode(path)).collect::<Vec<_>>(), "gaussians": loaded.gaussians.len(), "device": engine.device()?.name() }),
+        );
     }
     outputs.iter().try_for_each(|path| output::line(path.display()))
 }

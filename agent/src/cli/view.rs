@@ -9,6 +9,7 @@ use std::process::{Child, Command, Stdio};
 #[derive(Args, Debug)]
 pub struct Arguments {
     /// A spec (.toml, .json) or a version to start with; alone: the last session's newest version
+    #[arg(value_parser = setup::file_argument())]
     what: Option<String>,
     /// In a window (the only way yet)
     #[arg(long)]

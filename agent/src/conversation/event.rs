@@ -30,6 +30,7 @@ pub enum Event {
         /// Its name in the store.
         session: String,
         /// The store's folder.
+        #[serde(serialize_with = "phystalk::spec::file_name::serialize")]
         store: PathBuf,
         /// The scene's file, or `builtin:demo`.
         scene: String,
@@ -102,6 +103,7 @@ pub enum Event {
     #[serde(rename = "frame.ready")]
     FrameReady {
         /// Its file.
+        #[serde(serialize_with = "phystalk::spec::file_name::serialize")]
         path: PathBuf,
         /// Frame k shows time k / fps.
         index: u32,
@@ -112,6 +114,7 @@ pub enum Event {
     #[serde(rename = "metrics.ready")]
     MetricsReady {
         /// Their file.
+        #[serde(serialize_with = "phystalk::spec::file_name::serialize")]
         path: PathBuf,
     },
     /// Something the user should know.

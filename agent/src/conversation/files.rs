@@ -2,11 +2,12 @@
 
 use phystalk::Frame;
 use phystalk::export::{ContactSheet, ExportError, Preview, read_png, write_atomic};
+use phystalk::threads::{Task, caught};
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
-use std::thread::JoinHandle;
+use std::thread::ScopedJoinHandle;
 
 /// Frames that may wait for the disk before the run waits for it.
 const WAITING: usize = 8;
@@ -20,9 +21,12 @@ pub struct Files {
     fps: u32,
     to_disk: Option<SyncSender<Frame>>,
     written: Receiver<Written>,
-    disk: Option<JoinHandle<Result<(), ExportError>>>,
-    film: Option<JoinHandle<Result<(), ExportError>>>,
+    disk: Writing,
+    film: Writing,
 }
+
+/// A thread that writes; a panic on it is an error of the run.
+type Writing = Option<Task<Result<(), ExportError>>>;
 
 /// A frame that is on disk.
 #[derive(Clone, Debug)]
@@ -49,10 +53,10 @@ impl Files {
         }
         let preview = Preview::create(&folder.join("preview.webp"), f64::from(fps))?;
         let (to_film, film_frames) = sync_channel::<Frame>(WAITING);
-        let film = std::thread::spawn(move || compress(preview, &film_frames));
+        let film = Task::spawn("writing the preview", move || compress(preview, &film_frames))?;
         let (to_disk, disk_frames) = sync_channel::<Frame>(WAITING);
         let (done, written) = channel();
-        let disk = std::thread::spawn(move || store(&frames, &disk_frames, &to_film, &done));
+        let disk = Task::spawn("writing frames", move || store(&frames, &disk_frames, &to_film, &done))?;
         Ok(Files { folder: folder.to_owned(), fps, to_disk: Some(to_disk), written, disk: Some(disk), film: Some(film) })
     }
 
@@ -98,9 +102,8 @@ impl Files {
     }
 }
 
-fn join(thread: Option<JoinHandle<Result<(), ExportError>>>) -> Result<(), ExportError> {
-    // A panic on a writing thread has already ended the process through the panic hook.
-    thread.map_or(Ok(()), |t| t.join().unwrap_or(Ok(())))
+fn join(thread: Writing) -> Result<(), ExportError> {
+    thread.map_or(Ok(()), |thread| thread.join()?)
 }
 
 fn frame_path(frames: &Path, index: u32) -> PathBuf {
@@ -137,8 +140,17 @@ fn sheet(folder: &Path, fps: u32) -> Result<(), ExportError> {
         Ok(ContactSheet::tile(&Frame { index, time_s, size: raster.size, rgba8, png: Vec::new().into(), depth: None, id: None }))
     };
     let tiles: Vec<Result<_, ExportError>> = std::thread::scope(|scope| {
-        let readers: Vec<_> = wanted.iter().map(|&index| scope.spawn(move || read(index))).collect();
-        readers.into_iter().filter_map(|r| r.join().ok()).collect()
+        let spawn = |index| std::thread::Builder::new().spawn_scoped(scope, move || caught("reading frames", || read(index)));
+        let readers: Vec<_> = wanted.iter().map(|&index| (index, spawn(index).ok())).collect();
+        let mut tiles = Vec::new();
+        for (index, reader) in readers {
+            tiles.push(match reader.map(ScopedJoinHandle::join) {
+                Some(Ok(read)) => read.map_err(ExportError::from).and_then(|tile| tile),
+                // Where no thread is to be had, this one reads.
+                _ => read(index),
+            });
+        }
+        tiles
     });
     sheet.extend(tiles.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten());
     sheet.finish(&folder.join("contact.png"))

@@ -85,7 +85,7 @@ fn a_softened_run_goes_on_from_its_checkpoint_to_the_same_bits() {
     let mut whole = solver(settings.clone(), &two);
     frames(&mut whole, 1);
     whole.soften(0, "a test").expect("softened");
-    whole.set_wary(bytemuck::cast([1u32, 2, 3, 0]));
+    whole.set_wary(bytemuck::cast([1u32, 2, 3, 0, 0, 0]));
     frames(&mut whole, 1);
     let kept = whole.checkpoint().expect("a checkpoint");
     let mut resumed = solver(settings, &two);
@@ -226,3 +226,50 @@ fn neo_hookean_matter_that_was_turned_inside_out_gains_no_energy() {
         states.iter().filter(|s| s.index % 7 == 0).map(|s| s.volume_m3 * 0.5 * s.lambda_pa * 0.3f32.ln().powi(2) + s.volume_m3 * s.mu_pa).sum();
     assert!(kinetic_j < held_j, "{kinetic_j} J of {held_j} J");
 }
+
+/// Sizes that no spec reaches (`world::check_scale` refuses them) are the hardest inputs of the retries: numbers leave the range
+/// of f32 either way.
+#[test]
+fn every_run_ends_within_a_bounded_number_of_retries_whatever_its_size() {
+    use crate::solver::retry_budget::{FRAME_RETRIES_MOST, GIVEN_UP_MOST};
+    for cell_m in [4e-14, 1e-11, 1e-9, 1e-7, 1e-3, 1.0, 1e4, 1e7, 1e9, 1e12] {
+        for (size_cells, substance) in [(Vec3::splat(4.0), Substance::default()), (Vec3::new(4.0, 4.0, 0.5), STONE), (Vec3::splat(0.5), SMOOTHED)] {
+            // A liquid falls by its cell in sqrt(cell / g): below, its frames take many substeps, and no retries.
+            if substance == SMOOTHED && cell_m < 1e-3 {
+                continue;
+            }
+            let mut particles = block(0.5 * cell_m * Vec3::Z, size_cells * cell_m, 0.5 * cell_m, 1e5, 0.2);
+            particles.substances = vec![substance.clone()];
+            let gpu = crate::gpu::Gpu::shared_for_tests().expect("a device");
+            let Ok(mut solver) = Solver::new(&gpu, grounded(cell_m, 20), &particles) else { continue };
+            for frame in 1..=2 {
+                let to_s = f64::from(frame) * solver.settings.frame_s;
+                match solver.advance(to_s, &Stop::default()) {
+                    Ok(report) => assert!(report.retries <= FRAME_RETRIES_MOST, "{cell_m} {substance:?}: {report:?}"),
+                    Err(error) => {
+                        assert!(solver.wary.retries <= FRAME_RETRIES_MOST + 1 && solver.wary.given_up <= GIVEN_UP_MOST, "{cell_m}: {error}");
+                        assert!(!error.to_string().contains("NaN"), "{error}");
+                        break;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Room for a segment fails for ever where a pin drives matter out of any window: the run ends, at the same retry each time.
+#[test]
+fn a_run_without_progress_ends_with_an_error_that_names_its_last_failure() {
+    let cell_m = 4e-14;
+    let run = || {
+        let mut solver = solver(grounded(cell_m, 100), &of(Substance::default(), Vec3::Z, cell_m, 1e5));
+        let error = (1..=GIVEN_UP_FRAMES).find_map(|frame| solver.advance(f64::from(frame) * 0.02, &Stop::default()).err());
+        (error.map(|e| e.to_string()), solver.wary)
+    };
+    let (error, wary) = run();
+    let error = error.expect("a run that cannot go on");
+    assert!(error.contains("no progress") && error.contains("scene.metres_per_unit"), "{error}");
+    assert_eq!((Some(error), wary), run());
+}
+
+const GIVEN_UP_FRAMES: u32 = 20;

@@ -33,7 +33,7 @@ pub enum Axis {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// Path of the splat file, from the spec's folder; `builtin:demo` is the built-in scene.
+    /// Path of the splat file, from the spec's folder; `builtin:demo` is the built-in scene; a path that is not UTF-8 is `bytes:` and its bytes, percent-encoded (`bytes:caf%E9.splat`).
     pub file: String,
     /// BLAKE3 of the file's bytes, recorded when the spec is made; a file that changed is refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
