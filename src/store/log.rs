@@ -105,47 +105,56 @@ impl Guard {
 /// Reads a log; one that is not there is empty. No lock is needed: lines are only ever added, and one that another process
 /// is adding shows as torn.
 pub(super) fn read<T: DeserializeOwned>(root: &Folder, log: &str, old_format: bool) -> Result<Log<T>, StoreError> {
-    let empty = Log { lines: Vec::new(), damage: Vec::new(), lost: 0, torn: false };
-    let Some(history) = root.folder(HISTORY)? else { return Ok(empty) };
+    let name = file_name(log)?;
+    let Some(history) = root.folder(HISTORY)? else { return Ok(Log::of_bytes(b"", None, old_format)) };
     // The head first: a line that is added meanwhile is then beyond it, never missing.
-    let head = read_head(&history, log);
-    let Some(bytes) = history.read(&file_name(log)?)? else { return Ok(empty) };
-    let whole = whole_lines(&bytes);
-    let mut log = Log { torn: whole < bytes.len(), ..empty };
-    let mut chain = Chain::Start;
-    let mut count = 0;
-    for (index, text) in lines_of(&bytes[..whole]).enumerate() {
-        count = index + 1;
-        match parse(text, old_format) {
-            Ok(line) => {
-                if !chain.leads_to(&line) {
-                    log.lose(1, format!("lines before line {count} are missing"));
+    let head = history.read(&head_name(log))?;
+    match history.read(&name)? {
+        Some(bytes) => Ok(Log::of_bytes(&bytes, head.as_deref(), old_format)),
+        None => Ok(Log::of_bytes(b"", None, old_format)),
+    }
+}
+
+impl<T: DeserializeOwned> Log<T> {
+    /// Reads a log from the bytes of its file and of its head, none where that is missing. Anything may be in them.
+    pub fn of_bytes(bytes: &[u8], head: Option<&[u8]>, old_format: bool) -> Log<T> {
+        let whole = whole_lines(bytes);
+        let mut log = Log { lines: Vec::new(), damage: Vec::new(), lost: 0, torn: whole < bytes.len() };
+        let mut chain = Chain::Start;
+        let mut count = 0;
+        for (index, text) in lines_of(&bytes[..whole]).enumerate() {
+            count = index + 1;
+            match parse(text, old_format) {
+                Ok(line) => {
+                    if !chain.leads_to(&line) {
+                        log.lose(1, format!("lines before line {count} are missing"));
+                    }
+                    chain = line.check.map_or(Chain::Start, Chain::After);
+                    log.lines.push(line.value);
                 }
-                chain = line.check.map_or(Chain::Start, Chain::After);
-                log.lines.push(line.value);
-            }
-            Err((why, claimed)) => {
-                log.lose(1, format!("line {count}: {why}"));
-                chain = claimed.map_or(Chain::Unknown, Chain::After);
+                Err((why, claimed)) => {
+                    log.lose(1, format!("line {count}: {why}"));
+                    chain = claimed.map_or(Chain::Unknown, Chain::After);
+                }
             }
         }
-    }
-    match head {
-        Ok(Some(head)) => {
-            log.lost += head.lost;
-            if head.lines > count {
-                log.lose(head.lines - count, format!("{} lines at the end are missing", head.lines - count));
+        match head.map(serde_json::from_slice::<Head>) {
+            Some(Ok(head)) => {
+                log.lost = log.lost.saturating_add(head.lost);
+                if head.lines > count {
+                    log.lose(head.lines - count, format!("{} lines at the end are missing", head.lines - count));
+                }
             }
+            Some(Err(error)) => log.damage.push(format!("its head cannot be read: {error}")),
+            None => {}
         }
-        Ok(None) => {}
-        Err(error) => log.damage.push(error.to_string()),
+        log
     }
-    Ok(log)
 }
 
 impl<T> Log<T> {
     fn lose(&mut self, lines: usize, what: String) {
-        self.lost += lines;
+        self.lost = self.lost.saturating_add(lines);
         self.damage.push(what);
     }
 }
@@ -233,7 +242,7 @@ pub(super) fn relink(history: &Folder, log: &str, old_format: bool) -> Result<bo
         history.write(&name, &text)?;
     }
     if text != bytes || head.is_none() {
-        let lost = head.map_or(0, |head| head.lost + head.lines.saturating_sub(found)) + found - count;
+        let lost = head.map_or(0, |head| head.lost.saturating_add(head.lines.saturating_sub(found))).saturating_add(found - count);
         write_head(history, log, &Head { check: after, lines: count, lost })?;
     }
     Ok(text != bytes)

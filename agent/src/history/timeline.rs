@@ -194,7 +194,7 @@ impl Timeline {
 
     /// The number of the next version.
     pub(super) fn next_number(&self) -> u32 {
-        self.versions.iter().map(|version| version.number).max().unwrap_or(0) + self.lost + 1
+        self.versions.iter().map(|version| version.number).max().unwrap_or(0).saturating_add(self.lost).saturating_add(1)
     }
 
     /// Where the walk of undo is.

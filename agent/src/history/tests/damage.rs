@@ -99,3 +99,39 @@ fn a_session_of_the_first_format_goes_on() {
     assert_eq!(opened.undo("undo", 1).unwrap().note, "back to v1");
     assert!(session.undo("undo", 1).is_err(), "a process that looked before sees that the head moved");
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Any bytes in the place of any part of a session's files: it opens or is refused with a sentence, and every version that
+    /// is left is one that was made.
+    #[test]
+    fn any_damage_to_the_files_of_a_session_is_borne(
+        file in prop::sample::select(vec!["session-s1.jsonl", "session-s1.head", "sessions.jsonl", "sessions.head"]),
+        at in 0.0..1.0_f64,
+        length in 0..400_usize,
+        bytes in prop::collection::vec(any::<u8>(), 0..40),
+    ) {
+        let (_home, mut store) = store();
+        let whole = seven_lines(&store);
+        let path = store.dir().join("history").join(file);
+        let mut content = fs::read(&path).unwrap();
+        let start = (at * content.len() as f64) as usize;
+        let end = (start + length).min(content.len());
+        content.splice(start..end, bytes);
+        fs::write(&path, content).unwrap();
+        for name in [None, Some("s1")] {
+            if let Ok(opened) = open(&store, name) {
+                let made = |left: &Version| whole.versions().iter().any(|version| version.name == left.name && version.spec == left.spec);
+                prop_assert!(opened.versions().iter().all(made));
+                prop_assert!(opened.versions().len() == 4 || !opened.damage().is_empty() || opened.dropped_torn_line());
+            }
+        }
+        store.verify(true).unwrap();
+        sessions(&store).relist().unwrap();
+        prop_assert_eq!(store.verify(false).unwrap(), vec![]);
+        if let Ok(mut opened) = open(&store, None) {
+            turn(&mut opened, 9);
+        }
+    }
+}
