@@ -26,18 +26,13 @@ pub trait Target {
 
 /// The class of a message: its words, without the numbers and quotations that differ from input to input.
 pub fn class(message: &str) -> String {
-    let mut quoted = false;
+    // What is quoted may hold quotes itself: from the first to the last.
+    let around = message.split_once(['`', '"']).map_or((message, ""), |(before, rest)| (before, rest.rsplit(['`', '"']).next().unwrap_or_default()));
+    let words = around.0.chars().chain(around.1.chars());
     let mut class = String::new();
-    for c in message.chars() {
-        match c {
-            '`' | '"' => quoted = !quoted,
-            _ if quoted => {}
-            c if c.is_ascii_digit() => {
-                if !class.ends_with('#') {
-                    class.push('#');
-                }
-            }
-            c => class.push(c),
+    for c in words.map(|c| if c.is_ascii_digit() { '#' } else { c }) {
+        if !(c == '#' && class.ends_with('#')) {
+            class.push(c);
         }
     }
     class.chars().take(100).collect()

@@ -58,7 +58,8 @@ fn vertex_rows<'a, 'h>(bytes: &'a [u8], header: &'h Header, name: &str) -> Resul
         }
         if element.name == "vertex" && !element.lists {
             let present = bytes.len() as u128 - at.min(bytes.len() as u128);
-            if present < length {
+            // Also where it has no rows and the elements before it end behind the file.
+            if at + length > bytes.len() as u128 {
                 let whole = present / element.stride.max(1) as u128;
                 return Err(SceneError::Damaged {
                     file: name.to_owned(),

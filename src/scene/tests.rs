@@ -185,18 +185,20 @@ fn refusals_name_the_file_and_what_to_do() {
     let lying = ply_header_of("property float x\nproperty float y\nproperty float z\n", 4_000_000_000);
     let cloud = [ply_header_of("property float x\nproperty float y\nproperty float z\nproperty uchar red\n", 1), vec![0; 13]].concat();
     let none = ply::encode(&Gaussians::default());
+    let behind = b"ply\nformat binary_little_endian 1.0\nelement face 4294967295\nproperty float a\nelement vertex 0\nend_header\n".to_vec();
     let mut all_nan = random_gaussians(3, 0, 1);
     all_nan.mean.fill(Vec3::NAN);
     let mut ksplat = vec![0_u8; 5200];
     ksplat[1] = 1;
     ksplat[4] = 1;
-    let cases: [(&str, Vec<u8>, &[&str]); 14] = [
+    let cases: [(&str, Vec<u8>, &[&str]); 15] = [
         ("f.ply", vec![], &["0 bytes"]),
         ("f.ply", truncated, &["8 of 10 Gaussians", "copy or export"]),
         ("f.ply", lying, &["0 of 4000000000", "48000000"]),
         ("f.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nend_header\n".to_vec(), &["ascii", "not supported yet", "splat-transform"]),
         ("f.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex".to_vec(), &["end_header"]),
         ("f.ply", b"ply\nformat binary_little_endian 1.0\nproperty float x\n".to_vec(), &["line 3"]),
+        ("f.ply", behind, &["the end of the file after 0 of 0", "copy or export"]),
         ("f.ply", cloud, &["f_dc_0", "point cloud"]),
         ("f.ply", none, &["count is 0"]),
         ("f.ply", vec![1, 2, 3], &["no `ply` line"]),

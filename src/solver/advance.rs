@@ -174,8 +174,7 @@ impl Solver {
                 }
                 continue;
             }
-            let j = (seen.j_low, seen.j_high);
-            tracing::debug!(time_s = self.time_s, until_s, dt_s = plan.dt_s, substeps = plan.substeps, speed_m_s, ?j, wary = ?self.wary, "segment");
+            tracing::debug!(time_s = self.time_s, until_s, dt_s = plan.dt_s, substeps = plan.substeps, speed_m_s, ?seen, wary = ?self.wary, "segment");
             let (start, order) = (self.substep, self.current);
             let outcome = self.run(&plan, stop, tries.trips > 0)?;
             let Outcome::Done(now) = outcome else {
