@@ -99,7 +99,7 @@ impl Verification<'_> {
             let damage = self.store.read_log::<IgnoredAny>(name)?.damage;
             let file = format!("{name}.jsonl");
             for problem in &damage {
-                self.find(format!("{HISTORY}/{file}"), problem, Some("the sound lines are joined, a copy of the log is kept"));
+                self.find(format!("{HISTORY}/{file}"), problem, Some("the sound lines are joined; the log as it was is kept in the folder backup"));
             }
             if let Some(guard) = self.guard.as_ref().filter(|_| !damage.is_empty()) {
                 self.keep_copy(guard, &history, &file)?;

@@ -22,10 +22,10 @@ pub struct Flags {
     /// Folder that keeps versions and results [default: `.phystalk` here or above, else made here]
     #[arg(long, global = true, value_name = "DIR")]
     pub store: Option<PathBuf>,
-    /// Work on this session [default: a new one for `exec` and the REPL, else the last one]
+    /// Work on this session [default: a new one for `exec` and the REPL, else the last one that was used in this folder]
     #[arg(long, global = true, value_name = "NAME")]
     pub session: Option<String>,
-    /// Go on with the last session
+    /// Go on with the last session that was used in this folder
     #[arg(long = "continue", global = true)]
     pub resume: bool,
     /// Who understands words: `phrasebook` is built in

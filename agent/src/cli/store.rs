@@ -4,7 +4,7 @@ use super::exit::{Failure, Kind};
 use super::flags::Flags;
 use super::{output, stores};
 use clap::{Args, Subcommand};
-use phystalk::store::{AcceptedStores, FOLDER, Finding, Place, Store, Usage};
+use phystalk::store::{AcceptedStores, FOLDER, Finding, Place, Store, StoreError, Usage};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -55,7 +55,11 @@ fn existing(flags: &Flags) -> Result<Store, Failure> {
 fn accept(dir: &Path, flags: &Flags) -> Result<(), Failure> {
     let inner = dir.join(FOLDER);
     let dir = if inner.is_dir() { &inner } else { dir };
-    let mut place = Place::at(dir)?.ok_or_else(|| Failure::other(format!("there is no store in {}", dir.display())))?;
+    let mut place = match Place::at(dir) {
+        Ok(Some(place)) => place,
+        Ok(None) | Err(StoreError::NotAStore { .. }) => return Err(Failure::other(format!("there is no store in {}", dir.display()))),
+        Err(error) => return Err(error.into()),
+    };
     let list = AcceptedStores::of_user();
     let list = list.ok_or_else(|| Failure::other("your list of stores has no place: set HOME or XDG_STATE_HOME, or name the store with --store"))?;
     place.accept(&list)?;
@@ -76,7 +80,7 @@ fn usage(store: &Store, flags: &Flags) -> Result<(), Failure> {
 fn report(dir: &Path, usage: &Usage) -> String {
     let mut rows = vec![vec!["store".to_owned(), dir.display().to_string(), String::new()]];
     let row = |what: &str, bytes: u64, more: String| vec![what.to_owned(), size(bytes), more];
-    rows.extend(usage.stages.iter().map(|(stage, (entries, bytes))| row(stage, *bytes, format!("{entries} results"))));
+    rows.extend(usage.stages.iter().map(|(stage, (entries, bytes))| row(stage, *bytes, format!("results: {entries}"))));
     rows.push(row(
         "results",
         usage.bytes,
@@ -102,7 +106,7 @@ fn collect(store: &Store, keep: Option<u64>, flags: &Flags) -> Result<(), Failur
         return output::json(&json!({ "removed": collected, "usage": store.usage()? }));
     }
     let left = store.usage()?;
-    output::line(format!("removed {} results, {}; {} are left, {}", collected.entries, size(collected.bytes), left.entries, size(left.bytes)))
+    output::line(format!("results removed: {}, {}; left: {}, {}", collected.entries, size(collected.bytes), left.entries, size(left.bytes)))
 }
 
 fn verify(mut store: Store, repair: bool, flags: &Flags) -> Result<(), Failure> {
@@ -111,7 +115,7 @@ fn verify(mut store: Store, repair: bool, flags: &Flags) -> Result<(), Failure> 
     if repair {
         let relisted = sessions.relist()?;
         if relisted > 0 {
-            let problem = format!("{relisted} sessions were missing from the list");
+            let problem = format!("sessions that it did not name: {relisted}");
             findings.push(Finding { part: "history/sessions.jsonl".to_owned(), problem, repair: Some("they are listed again".to_owned()) });
         }
     }
@@ -131,9 +135,12 @@ fn verify(mut store: Store, repair: bool, flags: &Flags) -> Result<(), Failure> 
     let hurt = findings.iter().filter(|finding| finding.repair.is_some()).count();
     match (hurt, repair) {
         (0, _) | (_, true) => Ok(()),
-        (hurt, false) => {
-            Err(Failure::new(Kind::Store, format!("{hurt} parts are damaged: phystalk store verify --repair mends them and keeps copies")))
-        }
+        (hurt, false) => Err(Failure::new(
+            Kind::Store,
+            format!(
+                "damaged parts: {hurt}; phystalk store verify --repair mends what can be mended and keeps copies of logs in the store's folder backup"
+            ),
+        )),
     }
 }
 

@@ -16,7 +16,7 @@ pub fn place(flags: &Flags) -> Result<Option<Place>, Failure> {
         place.check_accepted(AcceptedStores::of_user().as_ref())?;
         return Ok(Some(place));
     };
-    let Some(mut place) = Place::at(&here.join(dir))? else { return Ok(None) };
+    let Some(mut place) = Place::at(&named(&here.join(dir)))? else { return Ok(None) };
     // Where the list cannot be written, naming the store works again the next time.
     if let Some(list) = AcceptedStores::of_user() {
         let _ = place.accept(&list);
@@ -30,32 +30,38 @@ pub fn with_work<T>(flags: &Flags, work: impl FnOnce(&Store) -> Result<T, Failur
     if let Some(place) = place(flags)? {
         return work(&open(place, flags)?);
     }
-    let store = make(flags)?;
+    let (store, notes) = make(flags)?;
     let done = work(&store);
-    if done.is_err() {
-        store.remove_unused()?;
+    match &done {
+        Ok(_) => notes.iter().for_each(output::note),
+        Err(_) => store.remove_unused()?,
     }
     done
 }
 
-fn make(flags: &Flags) -> Result<Store, Failure> {
+/// The store that a named folder means: itself, or the one that it holds.
+fn named(dir: &Path) -> PathBuf {
+    let inner = new_store_dir(dir);
+    if inner.is_dir() { inner } else { dir.to_owned() }
+}
+
+/// Makes a store; with it what the user should know about it once it is used.
+fn make(flags: &Flags) -> Result<(Store, Vec<String>), Failure> {
     let here = here()?;
     let mut place = Place::make(&flags.store.as_ref().map_or_else(|| new_store_dir(&here), |dir| here.join(dir)))?;
     let list = AcceptedStores::of_user();
     let noted = list.as_ref().map(|list| place.accept(list));
     let store = place.open()?;
+    let mut notes = Vec::new();
     if !flags.quiet {
-        let gigabytes = store.cap_bytes() as f64 / 1e9;
-        output::note(format!(
-            "made the store {}: versions stay there, and results up to {gigabytes:.1} GB (phystalk store du)",
-            store.dir().display()
-        ));
+        let (dir, gigabytes) = (store.dir().display(), store.cap_bytes() as f64 / 1e9);
+        notes.push(format!("made the store {dir}: versions stay there, and results up to {gigabytes:.1} GB (phystalk store du)"));
     }
     if flags.store.is_none() && !matches!(noted, Some(Ok(()))) {
         let why = noted.and_then(Result::err).map_or_else(|| "neither XDG_STATE_HOME nor HOME is set".to_owned(), |error| error.to_string());
-        output::note(format!("warning: your list of stores cannot be written ({why}): next time name this one, --store {}", store.dir().display()));
+        notes.push(format!("warning: your list of stores cannot be written ({why}): next time name this one, --store {}", store.dir().display()));
     }
-    Ok(store)
+    Ok((store, notes))
 }
 
 /// The store that is there, for reading; none where there is none.
@@ -81,7 +87,9 @@ pub fn session(flags: &Flags) -> Result<(Store, Session), Failure> {
     let Some(store) = existing(flags)? else {
         return Err(HistoryError::NoSuchSession { name: flags.session.clone(), known: Vec::new() }.into());
     };
-    let session = sessions(flags, &store)?.open(flags.session.as_deref())?;
+    let sessions = sessions(flags, &store)?;
+    list_damage(&sessions)?.into_iter().for_each(|text| output::note(format!("warning: {text}")));
+    let session = sessions.open(flags.session.as_deref())?;
     crate::conversation::damage(&session).into_iter().for_each(|text| output::note(format!("warning: {text}")));
     Ok((store, session))
 }
@@ -114,11 +122,7 @@ pub fn examine(flags: &Flags) -> (Option<PathBuf>, Vec<String>) {
 
 fn damage(flags: &Flags, store: &Store) -> Result<Vec<String>, Failure> {
     let sessions = sessions(flags, store)?;
-    let mut found = Vec::new();
-    let listed = sessions.damage()?;
-    if !listed.is_empty() {
-        found.push(format!("the list of sessions is damaged ({}): phystalk store verify --repair makes it anew", listed.join("; ")));
-    }
+    let mut found: Vec<String> = list_damage(&sessions)?.into_iter().collect();
     for (name, _) in sessions.used()? {
         match sessions.open(Some(&name)) {
             Ok(session) => found.extend(crate::conversation::damage(&session)),
@@ -126,4 +130,11 @@ fn damage(flags: &Flags, store: &Store) -> Result<Vec<String>, Failure> {
         }
     }
     Ok(found)
+}
+
+/// What is wrong with the list of sessions, and what to do about it.
+fn list_damage(sessions: &Sessions) -> Result<Option<String>, Failure> {
+    let damage = sessions.damage()?;
+    let sentence = || format!("the list of sessions is damaged ({}): phystalk store verify --repair makes it anew", damage.join("; "));
+    Ok((!damage.is_empty()).then(sentence))
 }

@@ -15,7 +15,7 @@ pub fn damage(session: &Session) -> Option<String> {
     let damage = session.damage();
     (!damage.is_empty()).then(|| {
         let name = session.name();
-        format!("session {name} is damaged ({}): the versions in those lines are missing, all others are there; phystalk store verify --repair mends the log", damage.join("; "))
+        format!("session {name} is damaged ({}): what those lines held is missing, all else is there; phystalk store verify --repair joins the rest and keeps a copy", damage.join("; "))
     })
 }
 

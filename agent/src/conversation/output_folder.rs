@@ -155,7 +155,8 @@ fn remove_version(version: &Path) -> io::Result<()> {
         }
     }
     // A folder that holds something else stays with it.
-    let _ = fs::remove_dir(frames).and_then(|()| fs::remove_dir(version));
+    let _ = fs::remove_dir(frames);
+    let _ = fs::remove_dir(version);
     Ok(())
 }
 

@@ -47,7 +47,7 @@ impl Sessions {
         Sessions { store: store.clone(), folder, any_folder: false }
     }
 
-    /// The last session may then be one that was used in another folder.
+    /// Where none was used in this folder, the last session may then be one of another folder.
     pub fn of_any_folder(self, any_folder: bool) -> Sessions {
         Sessions { any_folder, ..self }
     }
@@ -79,7 +79,8 @@ impl Sessions {
             Some(name) if is_name(name) => name.to_owned(),
             Some(_) => return Err(missing()),
             None => {
-                let here = known.iter().rev().find(|(_, folder)| *folder == self.folder || self.any_folder);
+                let here = known.iter().rev().find(|(_, folder)| *folder == self.folder);
+                let here = here.or_else(|| known.last().filter(|_| self.any_folder));
                 here.map(|(name, _)| name.clone()).ok_or_else(missing)?
             }
         };
@@ -118,9 +119,11 @@ impl Sessions {
         Ok(self.store.read_log::<Use>(SESSIONS)?.damage)
     }
 
-    /// Names every session in the list again that it lost; how many.
+    /// Names every session in the list again that it lost; how many. The last one stays the last.
     pub fn relist(&self) -> Result<usize, HistoryError> {
-        let listed: Vec<String> = self.store.read_log::<Use>(SESSIONS)?.lines.into_iter().map(|used| used.session).collect();
+        let uses = self.store.read_log::<Use>(SESSIONS)?.lines;
+        let last = uses.last().cloned();
+        let listed: Vec<String> = uses.into_iter().map(|used| used.session).collect();
         let mut count = 0;
         for log in self.store.logs()? {
             let Some(session) = log.strip_prefix(PREFIX).filter(|name| !listed.iter().any(|known| known == name)) else { continue };
@@ -128,6 +131,9 @@ impl Sessions {
                 self.store.lock()?.append(SESSIONS, &Use { session: session.to_owned(), folder: String::new() })?;
                 count += 1;
             }
+        }
+        if let Some(last) = last.filter(|_| count > 0) {
+            self.store.lock()?.append(SESSIONS, &last)?;
         }
         Ok(count)
     }

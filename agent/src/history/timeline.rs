@@ -124,6 +124,7 @@ impl Timeline {
 
     /// The undo target of a new version, and how its note reads.
     fn walk(&mut self, number: u32, how: How, restored: Option<Place>) -> (Option<u32>, String) {
+        // Where lines before this one are lost, the walk cannot be taken again: what was recorded holds.
         let recorded = |at: Option<u32>| restored.map_or(at, Place::number);
         match how {
             How::Edit => {
@@ -144,7 +145,7 @@ impl Timeline {
                     at = before;
                     taken += 1;
                 }
-                (at, format!("back to {}{}", place_name(recorded(at)), fewer(taken, steps)))
+                (at, format!("back to {}{}", place_name(recorded(at)), if recorded(at) == at { fewer(taken, steps) } else { String::new() }))
             }
             How::Redo(steps) => {
                 let mut at = self.at();
@@ -155,7 +156,7 @@ impl Timeline {
                     at = after;
                     taken += 1;
                 }
-                (at, format!("forward to {}{}", place_name(recorded(at)), fewer(taken, steps)))
+                (at, format!("forward to {}{}", place_name(recorded(at)), if recorded(at) == at { fewer(taken, steps) } else { String::new() }))
             }
         }
     }

@@ -78,6 +78,21 @@ fn a_damaged_list_of_sessions_is_made_anew_from_the_sessions() {
 }
 
 #[test]
+fn the_last_session_stays_the_last_when_a_lost_one_is_listed_again() {
+    let (_home, mut store) = store();
+    let mut first = session(&store);
+    turn(&mut first, 2);
+    turn(&mut session(&store), 2);
+    turn(&mut first, 3);
+    let path = store.dir().join("history/sessions.jsonl");
+    let list = fs::read_to_string(&path).unwrap().replace("\"s2\"", "\"s9\"");
+    fs::write(&path, list).unwrap();
+    store.verify(true).unwrap();
+    assert_eq!(sessions(&store).relist().unwrap(), 1);
+    assert_eq!((open(&store, None).unwrap().name(), names(&store).len()), ("s1", 2));
+}
+
+#[test]
 fn a_session_of_the_first_format_goes_on() {
     // A line of each operation, as the program wrote them before checksums.
     let (_home, store) = store();
