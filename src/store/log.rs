@@ -241,10 +241,8 @@ pub(super) fn relink(history: &Folder, log: &str, old_format: bool) -> Result<bo
     if text != bytes {
         history.write(&name, &text)?;
     }
-    if text != bytes || head.is_none() {
-        let lost = head.map_or(0, |head| head.lost.saturating_add(head.lines.saturating_sub(found))).saturating_add(found - count);
-        write_head(history, log, &Head { check: after, lines: count, lost })?;
-    }
+    let lost = head.map_or(0, |head| head.lost.saturating_add(head.lines.saturating_sub(found))).saturating_add(found - count);
+    write_head(history, log, &Head { check: after, lines: count, lost })?;
     Ok(text != bytes)
 }
 

@@ -17,11 +17,11 @@ pub struct Conflict {
 /// again on `theirs` and compares.
 pub fn merge(base: &Spec, ours: &Spec, theirs: &Spec, edits: &[Edit]) -> Result<Spec, Conflict> {
     let (mine, other) = (changes(base, ours), changes(base, theirs));
-    let mut paths: Vec<String> = mine
-        .iter()
-        .filter(|(path, value)| other.iter().any(|(p, v)| overlap(path, p) && (path, value) != (p, v)))
-        .map(|(path, _)| path.clone())
-        .collect();
+    // An edit that changed nothing on `base` would still undo what the other one set since.
+    let idle = edits.iter().filter(|edit| matches!(edit, Edit::Set { .. }) && !mine.iter().any(|(path, _)| overlap(path, edit.path())));
+    let idle: Vec<String> = idle.map(|edit| edit.path().to_owned()).filter(|path| other.iter().any(|(p, _)| overlap(path, p))).collect();
+    let excluded = |(path, value): &&(String, Option<Value>)| other.iter().any(|(p, v)| overlap(path, p) && (path, value) != (p, v));
+    let mut paths: Vec<String> = mine.iter().filter(excluded).map(|(path, _)| path.clone()).chain(idle).collect();
     if paths.is_empty() {
         match theirs.apply(edits) {
             Ok(merged) => return Ok(merged),
@@ -69,6 +69,15 @@ mod tests {
         let conflict = merge(&base, &edited(&base, &mars), &edited(&base, &moon), &mars).unwrap_err();
         assert_eq!(conflict.paths, ["world.gravity_m_s2"]);
         assert_eq!(merge(&base, &edited(&base, &moon), &edited(&base, &moon), &moon).unwrap(), edited(&base, &moon), "both said the same");
+    }
+
+    #[test]
+    fn an_edit_that_set_what_was_there_does_not_undo_what_somebody_else_set() {
+        let base = Spec::of_scene("vase.splat");
+        let theirs = edited(&base, &[Edit::set("seed", 5)]);
+        let ours = [Edit::set("seed", base.seed), Edit::set("time.fps", 25)];
+        assert_eq!(merge(&base, &edited(&base, &ours), &theirs, &ours).unwrap_err().paths, ["seed"]);
+        assert!(merge(&base, &edited(&base, &ours), &edited(&base, &[Edit::set("solver.cells_across", 20)]), &ours).is_ok());
     }
 
     #[test]
