@@ -6,8 +6,8 @@ use bytemuck::Pod;
 /// An entry of the store. A damaged one, which the store has taken away by then, counts as absent.
 pub(super) fn find(store: &Store, stage: &str, key: &str) -> Result<Option<Entry>, StoreError> {
     match store.get(stage, key) {
-        Err(StoreError::Damaged { path, why }) => {
-            tracing::warn!("{} is damaged ({why}) and is made anew", path.display());
+        Err(damage @ (StoreError::Damaged { .. } | StoreError::Spoilt { .. })) => {
+            tracing::warn!("{damage}; it is made anew");
             Ok(None)
         }
         other => other,
@@ -31,8 +31,8 @@ pub(super) fn is_sound(entry: &Entry, name: &str) -> Result<bool, StoreError> {
 /// Reads one array back; a damaged blob or one of a wrong length reads as `None`, which callers treat as a miss.
 pub(super) fn read<T: Pod>(entry: &Entry, name: &str) -> Result<Option<Vec<T>>, StoreError> {
     let bytes = match entry.read(name) {
-        Err(StoreError::Damaged { path, why }) => {
-            tracing::warn!("{} is damaged ({why}) and is made anew", path.display());
+        Err(damage @ (StoreError::Damaged { .. } | StoreError::Spoilt { .. })) => {
+            tracing::warn!("{damage}; it is made anew");
             return Ok(None);
         }
         other => other?,

@@ -30,8 +30,9 @@ pub struct Log<T> {
     pub torn: bool,
 }
 
-/// One line as it lies on disk.
+/// One line as it lies on disk. An edited name of a field is damage too.
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Line<'a> {
     check: String,
     after: Option<String>,
