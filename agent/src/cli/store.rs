@@ -48,8 +48,11 @@ pub fn run(arguments: &Arguments, flags: &Flags) -> Result<(), Failure> {
 }
 
 fn existing(flags: &Flags) -> Result<Store, Failure> {
-    stores::existing(flags)?
-        .ok_or_else(|| Failure::other("there is no store here or above: phystalk exec SCENE -p TEXT makes one, --store names one"))
+    let missing = || match &flags.store {
+        Some(dir) => format!("there is no store in {}", dir.display()),
+        None => "there is no store here or above: phystalk exec SCENE -p TEXT makes one, --store names one".to_owned(),
+    };
+    stores::existing(flags)?.ok_or_else(|| Failure::other(missing()))
 }
 
 fn accept(dir: &Path, flags: &Flags) -> Result<(), Failure> {
